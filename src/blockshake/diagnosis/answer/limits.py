@@ -128,23 +128,20 @@ def _by_place(name, likelihood, by_place, needed):
 
 def _soft(likelihood, by_place, needed, closed):
     """Of a soft layer, whose rows have no amplitude: the smallest compliance that closed and turned joints show."""
-    places, found = sorted({*by_place, *closed}), {}
-    for place in places:
+    places, found = {*by_place, *closed}, {}
+    for place in sorted(places):
         for number, compliance in enumerate(COMPLIANCES):
-            turned, square = {}, 0.0
+            turned, stiff, square = 0.0, 0.0, 0.0
             if place in by_place:
                 true = likelihood.whiten([columns.rows for columns in by_place[place][number]])
                 square = float(likelihood.normal_equations(true)[1][0, 0])
                 expected = replace(likelihood, value=true[:, 0])
-                turned = {
-                    one: best_of(expected, JOINT_COMPLIANCE.name, one, tried).gains
-                    for one, tried in by_place.items()
-                }
-            stiff = {one: joint.expected(compliance * (one == place)) for one, joint in closed.items()}
+                turned = best_of(expected, JOINT_COMPLIANCE.name, place, by_place[place]).gains
             if place in closed:
                 square += compliance**2 * closed[place].information
-            gains = [mean_evidence(soft_gains(turned.get(one, 0.0), stiff.get(one, 0.0))) for one in places]
-            if mean_evidence(gains) - SURELY * np.sqrt(square) > needed:
+                stiff = closed[place].expected(compliance)
+            gain = mean_evidence(soft_gains(turned, stiff)) - np.log(len(places))
+            if gain - SURELY * np.sqrt(square) > needed:
                 found[place] = float(compliance)
                 break
     return found
