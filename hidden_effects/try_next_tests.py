@@ -41,13 +41,16 @@ def _made(seen, causes, held, true, test):
     """Share of 1000 made measurements that leave the true cause alone."""
     generator = np.random.default_rng(_DRAWS)
     really = expected_readings(seen, true["name"], true["place"], true["values"])
-    odds = np.tile([-cause.odds for cause in causes], (_DRAWS, 1))
-    for reading, deviation in test.readings.items():
-        read = really.get(reading, 0.0) + deviation * generator.standard_normal(_DRAWS)
-        for column, cause in enumerate(causes):
-            expected, errors = readings_of_cause(seen, cause)
-            spread = np.hypot(deviation, errors.get(reading, 0.0))
-            odds[:, column] -= 0.5 * ((read - expected.get(reading, 0.0)) / spread) ** 2 + np.log(spread)
+    noise = {reading: error * generator.standard_normal(_DRAWS) for reading, error in test.readings.items()}
+    odds = np.full((_DRAWS, len(causes)), -np.inf)
+    for column, cause in enumerate(causes):
+        for expected, errors in readings_of_cause(seen, cause):
+            logs = np.full(_DRAWS, -cause.odds)
+            for reading, deviation in test.readings.items():
+                off = really.get(reading, 0.0) + noise[reading] - expected.get(reading, 0.0)
+                spread = np.hypot(deviation, errors.get(reading, 0.0))
+                logs -= 0.5 * (off / spread) ** 2 + np.log(spread)
+            odds[:, column] = np.maximum(odds[:, column], logs)
     others = np.delete(odds, held, axis=1).max(axis=1)
     return float(np.mean(odds[:, held] - others > ODDS))
 

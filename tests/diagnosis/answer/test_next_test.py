@@ -8,6 +8,7 @@ from made_up_decision import made_up_cause
 
 from blockshake.diagnosis.answer.answer import COARSENING, ODDS
 from blockshake.diagnosis.answer.next_test import _split, next_tests
+from blockshake.diagnosis.answer.places import place_name
 from blockshake.diagnosis.answer.static_tests import distance, expected_readings, static_tests
 from blockshake.forces.faces import find_faces
 from blockshake.geometry.structure import load_structure
@@ -28,7 +29,8 @@ def _cause(name, place, odds=0.0, when=None, **sizes):
         key: {"estimate": value, "lower": 0.9 * value, "upper": 1.1 * value, "unit": "1"}
         for key, value in sizes.items()
     }
-    return made_up_cause(name, place, odds=odds, parameters=parameters, when=when or {})
+    places = {"places": (place_name(place),), "odds": odds, "parameters": parameters, "when": when or {}}
+    return made_up_cause(name, place, **places)
 
 
 def test_an_eccentric_block_leans_every_joint_below_it_by_its_share_of_the_mass(seen):
@@ -84,3 +86,13 @@ def test_weighing_the_right_block_splits_an_eccentric_block_from_a_push(seen):
     shares = {one.test: one.share for one in next_tests([heavy, push], [seen], None)}
     assert shares["weigh block-2 on two supports"] > 0.95
     assert "weigh block-1 on two supports" not in shares
+
+
+def test_where_the_block_is_not_known_weighing_one_splits_as_often_as_it_is_the_one(seen):
+    heavy = _cause("eccentricity", {"body": "block-2"}, offset=0.05)
+    anywhere = heavy.model_copy(update={"places": ("block-2", "block-1")})
+    push = _cause(
+        "push", {"body": "block-3", "height": 0.4}, odds=6.0, when={"starts": {"t1": 0.0}}, force=3e3
+    )
+    shares = {one.test: one.share for one in next_tests([anywhere, push], [seen], None)}
+    assert shares["weigh block-2 on two supports"] == pytest.approx(0.5, abs=0.02)

@@ -70,7 +70,7 @@ def test_sensors_of_a_file_are_the_chosen_ones_and_their_noise_counts(tmp_path):
         (["alkion", "alkion@1.0"], None, "once"),
         (["no-such-motion"], None, "no-such-motion"),
         (["alkion"], SENSORS.replace("BODY", "block-9"), "block-9"),
-        (["alkion"], "markers: [{name: b, body: block-1, position: [0, 0, 0]}]", "slab"),
+        (["alkion"], "markers: [{name: b, body: block-1, position: [0, 0, 0]}]", "on a driven body"),
         (["alkion"], "marker: []", "unknown key"),
     ],
 )

@@ -5,6 +5,7 @@ from scipy.special import ndtr
 
 from blockshake.diagnosis.answer.answer import COARSENING, ODDS
 from blockshake.diagnosis.answer.decision import Measurement
+from blockshake.diagnosis.answer.places import place_of
 from blockshake.diagnosis.answer.static_tests import distance, expected_readings, static_tests
 from blockshake.diagnosis.outside.registry import FORMS
 
@@ -28,28 +29,40 @@ def next_tests(causes, seen, evidence):
     -----
     A measurement whose readings lie R squared standard deviations apart under two causes adds to the logarithm of their
     odds R/2 in the mean, with the variance R. Of further rows that is coarsened, as all rows are. A set is split where
-    the true cause is left alone: by the rival that leaves it latest, averaged over the causes by their odds.
+    the true cause is left alone: by the rival that leaves it latest, averaged over the causes by their odds and over
+    the places of each; a rival may be at any of its own.
     """
     if len(causes) < 2:
         return ()
-    both = [(one, other) for one in range(len(causes)) for other in range(len(causes)) if other != one]
+    numbers = range(len(causes))
     read = [readings_of_cause(seen[0], cause) for cause in causes]
     apart = {}
     for static in static_tests(seen[0]):
         apart[static.kind, static.words] = {
-            (one, other): (distance(static, *read[one], *read[other]), 0.0) for one, other in both
+            (one, other): [
+                (min(distance(static, *true, *rival) for rival in read[other]), 0.0) for true in read[one]
+            ]
+            for one in numbers
+            for other in numbers
         }
     for number, test in enumerate(evidence.tests if evidence else ()):
         apart[REPEAT, f"repeat {test.seen.name}"] = _further_rows(causes, evidence, number)
-    weights, found = np.exp([-cause.odds for cause in causes]), []
+    weights, between = np.exp([-cause.odds for cause in causes]), tuple(cause.name for cause in causes)
+    found = []
     for (kind, words), squares in apart.items():
-        shares = np.ones(len(causes))
-        for one, other in both:
-            square, gained = squares.get((one, other), (0.0, 0.0))
-            shares[one] = min(shares[one], _split(causes[one], causes[other], square, gained, kind == REPEAT))
+        shares = []
+        for one in numbers:
+            by_rival = [
+                [
+                    _split(causes[one], causes[other], *square, kind == REPEAT)
+                    for square in squares.get((one, other), [(0.0, 0.0)])
+                ]
+                for other in numbers
+                if other != one
+            ]
+            shares.append(np.mean(np.min(by_rival, axis=0)))
         share = float(weights @ shares / weights.sum())
         if share >= _LEAST:
-            between = tuple(cause.name for cause in causes)
             found.append(Measurement(between=between, kind=kind, test=words, share=share))
     return tuple(sorted(found, key=lambda one: (-one.share, one.test))[:_MOST])
 
@@ -64,16 +77,17 @@ def _split(true, rival, square, gained, rows):
 
 
 def readings_of_cause(seen, cause):
-    """Expected static readings of a `Cause`, and their standard deviations from that of its size, by name."""
+    """Expected static readings of a `Cause`, and their standard deviations from that of its size, at each place."""
     values = {name: one.estimate for name, one in cause.parameters.items()} | cause.when
-    middle = expected_readings(seen, cause.name, cause.place, values)
-    name = next(iter(cause.parameters), None)
-    if name is None:
-        return middle, {}
-    size = cause.parameters[name]
-    moved = values | {name: size.estimate + (size.upper - size.lower) / _SIGMAS}
-    further = expected_readings(seen, cause.name, cause.place, moved)
-    return middle, {reading: abs(further[reading] - value) for reading, value in middle.items()}
+    name, found = next(iter(cause.parameters), None), []
+    moved = dict(values)
+    if name is not None:
+        moved[name] += (cause.parameters[name].upper - cause.parameters[name].lower) / _SIGMAS
+    for words in cause.places:
+        place = place_of(cause.name, words, seen)
+        middle, further = (expected_readings(seen, cause.name, place, one) for one in (values, moved))
+        found.append((middle, {reading: abs(further[reading] - value) for reading, value in middle.items()}))
+    return found
 
 
 def _further_rows(causes, evidence, number):
@@ -105,5 +119,5 @@ def _further_rows(causes, evidence, number):
             fitted = np.linalg.solve(np.eye(against.shape[1]) + against.T @ against, against.T @ made)
             fitted[nuisances.shape[1] :] *= lasts[other]
             left = shown - against[again] @ fitted
-            squares[one, other] = float(left @ left), 0.5 * float(shown @ shown)
+            squares[one, other] = [(float(left @ left), 0.5 * float(shown @ shown))]
     return squares
