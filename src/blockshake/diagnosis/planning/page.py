@@ -82,7 +82,7 @@ def _document(asked, told, additions):
             f"averaged over {CAMPAIGNS} nominal campaigns and the noise of the sensors, with the needs and odds of the "
             "diagnosis. Never: not within the prior of the size. Empty: it shows in other readings, and is told apart "
             f"as soon as it is seen. Where the tests tell least of it{f' ({places})' if places else ''}.",
-            ("Told from", *(sentence_case(name_of(name)) for name in header[1:])),
+            ("Told from", *(sentence_case(name_of(name))[:-1] for name in header[1:])),
             tuple(rows),
             "l" * len(header),
         ),
@@ -92,7 +92,7 @@ def _document(asked, told, additions):
         f"One measurement more, ranked by the pairs that it separates for its cost. Pairs: sum over effects of their "
         f"visible size and all rivals of the chance more to tell them apart, mean of {OF_ADDITIONS} nominal campaigns. "
         "Static tests tell of the effect where the tests tell least of it.",
-        tuple(map(sentence_case, head)),
+        tuple(sentence_case(words)[:-1] for words in head),
         tuple(ranked),
         "lrrl",
         (0.4, 0.1, 0.1, 0.4),

@@ -38,7 +38,7 @@ def answer_section(diagnosed):
             )
         )
     items = _items(diagnosed)
-    further = [*([Items(items)] if items else []), *_next_tests(diagnosed.verdict)]
+    further = [*([Items(items)] if items else []), *next_tests_table(diagnosed.verdict)]
     return Section("Answer", "answer", (*blocks, *further, *_figures(diagnosed)))
 
 
@@ -92,11 +92,12 @@ def _items(diagnosed):
     return tuple(items)
 
 
-def _next_tests(verdict):
+def next_tests_table(verdict):
+    """Table of the measurements that would split the sets; an empty list without any."""
     """The ranked measurements that would split what the tests do not tell apart."""
     rows = [
         (
-            sentence_case(one.test),
+            sentence_case(one.test)[:-1],
             listed([name_of(name) for name in one.between], "or"),
             f"{100.0 * one.share:.0f} %",
         )
