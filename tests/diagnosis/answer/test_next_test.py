@@ -7,7 +7,7 @@ import pytest
 from made_up_decision import made_up_cause
 
 from blockshake.diagnosis.answer.answer import COARSENING, ODDS
-from blockshake.diagnosis.answer.next_test import _split, next_tests
+from blockshake.diagnosis.answer.next_test import _split, next_tests, readings_of_cause
 from blockshake.diagnosis.answer.places import place_name
 from blockshake.diagnosis.answer.static_tests import distance, expected_readings, static_tests
 from blockshake.forces.faces import find_faces
@@ -96,3 +96,11 @@ def test_where_the_block_is_not_known_weighing_one_splits_as_often_as_it_is_the_
     )
     shares = {one.test: one.share for one in next_tests([anywhere, push], [seen], None)}
     assert shares["weigh block-2 on two supports"] == pytest.approx(0.5, abs=0.02)
+
+
+def test_a_form_of_the_size_is_not_taken_for_the_size(seen):
+    """Of worn edges ``when`` says how the inset goes with the rotation, under the name of the size."""
+    worn = _cause("reduced-bearing", {}, inset=0.05, when={"inset": "rolling"})
+    ((middle, errors),) = readings_of_cause(seen, worn)
+    assert set(middle.values()) == {-0.05}
+    assert set(errors.values()) == {pytest.approx(0.01 / 3.29)}

@@ -78,7 +78,8 @@ def _split(true, rival, square, gained, rows):
 
 def readings_of_cause(seen, cause):
     """Expected static readings of a `Cause`, and their standard deviations from that of its size, at each place."""
-    values = {name: one.estimate for name, one in cause.parameters.items()} | cause.when
+    values = {name: one.estimate for name, one in cause.parameters.items()}
+    values |= {key: value for key, value in cause.when.items() if key not in values}
     name, found = next(iter(cause.parameters), None), []
     moved = dict(values)
     if name is not None:
