@@ -82,7 +82,9 @@ def made_by():
     )
 
 
-def make_case(seed, names, size, folder, truth_folder, sealed=True, structure_name="two-blocks", hollow=0.0):
+def make_case(
+    seed, names, size, folder, truth_folder, sealed=True, structure_name="two-blocks", hollow=0.0, causes=None
+):
     """Write the campaign, then its truth, then the README that commits to the truth.
 
     Parameters
@@ -101,13 +103,15 @@ def make_case(seed, names, size, folder, truth_folder, sealed=True, structure_na
     hollow : float
         Depth of the true blocks' faces in their middle, which the campaign's structure does not state [m]. Nonsmooth
         contact has no faces that could be hollow.
+    causes : list of dict, optional
+        As of `true_causes`, in place of those that are drawn.
     """
     plan = tests_of(structure_name, seed, sealed)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "README").unlink(missing_ok=True)
     structure = load_structure(structure_file(structure_name))
     shutil.copyfile(structure_file(structure_name), folder / "structure.yaml")
-    causes = true_causes(names, size, structure, len(plan), seed)
+    causes = causes or true_causes(names, size, structure, len(plan), seed)
     parameters, wider = true_parameters(structure, seed)
     physical, own = part_parameters(parameters)
     physical |= {"shapes.block.hollow": hollow} if hollow else {}

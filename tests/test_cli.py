@@ -225,6 +225,7 @@ def test_a_picture_or_export_that_cannot_be_made_leaves_nothing(
         ["import-campaign", "nothing.yaml"],
         ["generate-campaign", "nothing.yaml", "--structure", "configuration-1", "--truth", "new/truth"],
         ["diagnose", "nothing"],
+        ["plan-campaign", "nothing", "--motions", "alkion"],
     ],
     ids=lambda arguments: arguments[0],
 )

@@ -29,7 +29,7 @@ ROOMS_OF_DIAGNOSIS = [
     ["outside"],
     ["answer"],
     ["nominal", "wording"],
-    ["misfit"],
+    ["misfit", "planning"],
     ["verdict"],
     ["gain"],
     ["flight"],
@@ -50,15 +50,15 @@ ROOMS_OF_STUDY = [
 MOST_MODULES = 15
 WITH_ROOMS = ("diagnosis", "study")  # whose folders have a budget each
 MOST_LINES = {
-    ".": 2130, "tables": 610, "statistics": 375, "geometry": 2505, "dynamics": 2795, "solvers": 8610,
+    ".": 2170, "tables": 610, "statistics": 375, "geometry": 2505, "dynamics": 2795, "solvers": 8610,
     "measurement": 4170, "simulation": 1615, "parity": 2265, "forces": 2160, "effects": 990, "pages": 840,
     "study": 900, "study/sampling": 1010, "study/ensembles": 1320, "study/stiffness": 590,
     "study/comparison": 705, "study/fragility": 525, "study/sensitivity": 890, "study/calibration": 1085,
     "study/statements": 1115, "study/report": 1820, "views": 750, "diagnosis": 335,
-    "diagnosis/evidence": 1095, "diagnosis/outside": 675, "diagnosis/answer": 1200,
-    "diagnosis/nominal": 800, "diagnosis/misfit": 430, "diagnosis/verdict": 580, "diagnosis/gain": 1245,
-    "diagnosis/report": 1000, "virtual": 485, "own_files": 895, "cost": 310, "diagnosis/flight": 1245,
-    "diagnosis/outcomes": 965,
+    "diagnosis/evidence": 1110, "diagnosis/outside": 675, "diagnosis/answer": 1570,
+    "diagnosis/nominal": 805, "diagnosis/misfit": 430, "diagnosis/verdict": 585, "diagnosis/gain": 1245,
+    "diagnosis/report": 1025, "virtual": 485, "own_files": 895, "cost": 310, "diagnosis/flight": 1245,
+    "diagnosis/outcomes": 965, "diagnosis/planning": 595,
 }  # fmt: skip
 MOST_LINES_TOGETHER = 50_700
 
@@ -113,7 +113,7 @@ def test_rooms_of_the_diagnosis_have_few_arrows():
         for own, other in arrows()
         if own[0] == other[0] == "diagnosis" and len(own) > 2 and len(other) > 2 and own[1] != other[1]
     }
-    assert len(pairs) <= 29
+    assert len(pairs) <= 32
 
 
 def test_no_folder_holds_more_than_fifteen_modules():

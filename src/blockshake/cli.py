@@ -166,6 +166,26 @@ def _parser():
     command.add_argument("--effort", default="standard", metavar="quick|standard|deep")
     command.add_argument("--cores", type=int, metavar="N", help="default: all")
 
+    command = add(
+        "plan-campaign",
+        _plan_campaign,
+        "which causes motions and sensors would tell apart, and what one test more adds",
+    )
+    command.add_argument("structure", metavar="STRUCTURE")
+    command.add_argument(
+        "--motions",
+        nargs="+",
+        required=True,
+        metavar="NAME|FILE[@SCALE]",
+        help="a test each, such as alkion@2.5",
+    )
+    command.add_argument("--sensors", metavar="SENSORS.yaml", help="default: those of the structure file")
+    command.add_argument("--duration", type=float, metavar="S", help="of every test (default: its motion's)")
+    command.add_argument(
+        "--costs", metavar="COSTS.yaml", help="of one measurement more, over that of a shake"
+    )
+    command.add_argument("--output", required=True, metavar="DIR", help="of plan.json and plan.html")
+
     command = add("check", _check, "say what is wrong with structure, motion or study files")
     command.add_argument("files", nargs="+", metavar="FILE")
     command.add_argument("--picture", metavar="PICTURE", help="of one structure: .png, .pdf or .svg")
@@ -350,6 +370,23 @@ def _diagnose(options):
     named = f" ({verdict.decision}): {', '.join(verdict.causes)}" if verdict.causes else ""
     print(f"{verdict.word}{named}; {options.output}/report.html")
     return 0
+
+
+def _plan_campaign(options):
+    check_output(f"{options.output}/plan.json")
+    from blockshake.diagnosis.planning.nominal_tests import load_asked
+    from blockshake.diagnosis.planning.page import addition_rows, matrix_rows, write_plan
+    from blockshake.diagnosis.planning.plan import load_costs, plan_campaign
+
+    _show_progress()
+    costs = load_costs(options.costs)
+    asked = load_asked(options.structure, options.motions, options.sensors, options.duration)
+    told, additions = plan_campaign(asked, costs, logging.getLogger("blockshake").info)
+    write_plan(options.output, asked, told, additions)
+    _print_table(matrix_rows(told))
+    print()
+    _print_table(addition_rows(additions))
+    print(f"{options.output}/plan.html")
 
 
 def _check(options):

@@ -3,8 +3,8 @@ from types import SimpleNamespace
 import pytest
 from fake_findings import ECCENTRIC, KINDS, part
 
-from blockshake.diagnosis.answer.decision import Cause, Estimate, Part
-from blockshake.diagnosis.report.answer_section import percent_words
+from blockshake.diagnosis.answer.decision import Cause, Estimate, Measurement, Part
+from blockshake.diagnosis.report.answer_section import next_tests_table, percent_words
 from blockshake.diagnosis.report.statement import not_told, statement
 from blockshake.diagnosis.verdict.verdict import Contrast
 from blockshake.diagnosis.wording import (
@@ -118,3 +118,16 @@ def test_a_gain_without_anything_to_gain_is_called_so():
 
 def test_cause_has_the_title_of_its_form():
     assert Cause.model_validate({**ECCENTRIC, "name": "blow"}).title == "a blow"
+
+
+def test_measurements_that_split_a_set_are_a_table():
+    jack = Measurement(
+        between=("weak-joint", "rate-weakening-friction"),
+        kind="jack",
+        test="push block-1 with a jack",
+        share=0.9,
+    )
+    (table,) = next_tests_table(SimpleNamespace(next_tests=(jack,)))
+    words = "joint of low friction or friction that falls with slip rate"
+    assert table.rows == (("Push block-1 with a jack", words, "90 %"),)
+    assert next_tests_table(SimpleNamespace(next_tests=())) == []

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from made_up_decision import made_up_decision
 
+from blockshake.diagnosis.answer.decision import Measurement
 from blockshake.diagnosis.verdict.conclusion import conclude
 from blockshake.effects.registry import EFFECTS
 from blockshake.parity.finding import Finding
@@ -96,3 +97,18 @@ def test_two_parts_are_a_combination_and_silent_tests_are_said():
     verdict = _verdict(made_up_decision("combination", ("weak-joint",), ("table-pitch",), silent=["t2"]))
     assert verdict.causes == ("weak-joint", "table-pitch")
     assert any("in t2" in line for line in verdict.caveats)
+
+
+def test_measurements_that_split_a_set_stand_in_the_verdict_and_in_its_words():
+    jack = {
+        "between": ["weak-joint", "rate-weakening-friction"],
+        "kind": "jack",
+        "test": "push it",
+        "share": 0.9,
+    }
+    decision = made_up_decision("ambiguous", ("weak-joint", "rate-weakening-friction"))
+    (part,) = decision.parts
+    told = part.model_copy(update={"next_tests": (Measurement.model_validate(jack),)})
+    verdict = _verdict(decision.model_copy(update={"parts": (told,)}))
+    assert [one.test for one in verdict.next_tests] == ["push it"]
+    assert verdict.next_test == "push it (splits 90 % of such cases)"

@@ -18,9 +18,10 @@ from blockshake.diagnosis.answer.decision import Cause, Decision, Part
 from blockshake.diagnosis.answer.departures import departures, largest, slab_departures
 from blockshake.diagnosis.answer.explain import gather_evidence
 from blockshake.diagnosis.answer.limits import cannot_see, excluded_above, limits_of
+from blockshake.diagnosis.answer.next_test import next_tests
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_of
 from blockshake.diagnosis.answer.size import members_of, size_of
-from blockshake.diagnosis.evidence.closed_joints import closed_joint_gains
+from blockshake.diagnosis.evidence.closed_joints import closed_joints
 from blockshake.diagnosis.evidence.explanation import Fit, mean_evidence
 from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
 from blockshake.diagnosis.evidence.spin_kept import restitution_gain
@@ -57,7 +58,8 @@ def decide(seen, without=(), unseen=()):
     Decided
     """
     evidence = gather_evidence(seen, without)
-    closed = {} if JOINT_COMPLIANCE.name in without else closed_joint_gains(seen)
+    joints = {} if JOINT_COMPLIANCE.name in without else closed_joints(seen)
+    closed = {name: joint.gains for name, joint in joints.items()}
     slabs = [slab_motion(test) for test in seen]
     slab = explain_slab(slabs, without)
     of_slab, tree = slab_groups(slab), seen[0].tree
@@ -81,7 +83,7 @@ def decide(seen, without=(), unseen=()):
         acting.append(_of_impacts(impacts))
     parts = tuple(sorted(acting, key=lambda part: -part.causes[0].gain))
     shown = departures(seen, evidence, explained)
-    limits = limits_of(evidence, slab)
+    limits = limits_of(evidence, slabs, joints, without)
     decision = Decision(
         decision=kind_of(parts),
         parts=parts,
@@ -163,7 +165,8 @@ def _part(readings, group, seen, evidence, closed, slab=None):
                 amplitudes=best.mean.tolist(),
             )
         )
-    return Part(readings=readings, causes=causes, odds=group.odds, gains=group.gains)
+    measurements = next_tests(causes, seen, evidence)
+    return Part(readings=readings, causes=causes, odds=group.odds, gains=group.gains, next_tests=measurements)
 
 
 def _fits(rival, places, evidence, closed, slab):

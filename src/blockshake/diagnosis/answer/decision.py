@@ -28,6 +28,15 @@ class Estimate(Strict):
         return self
 
 
+class Measurement(Strict):
+    """A measurement that would split a set: what it is between, its kind, in words, and the share of split cases."""
+
+    between: tuple[str, ...]
+    kind: str
+    test: str
+    share: Fraction
+
+
 class Cause(Strict):
     """A cause that the readings speak for, at its likeliest place.
 
@@ -86,12 +95,15 @@ class Part(Strict):
         Of the likeliest over every rival, as a logarithm, coarsened.
     gains : dict of str to float
         Logarithm of the evidence over none, by rival.
+    next_tests : tuple of Measurement
+        That would split the causes, by falling share; empty of a single one.
     """
 
     readings: str
     causes: tuple[Cause, ...]
     odds: dict[str, Finite]
     gains: dict[str, Finite]
+    next_tests: tuple[Measurement, ...] = ()
 
     @property
     def effects(self):

@@ -150,6 +150,11 @@ class Evidence:
         """`JointRows` of the tests with rows."""
         return self.tried.tests
 
+    @property
+    def usual(self):
+        """The `Likelihood` that speaks loudest without any cause."""
+        return max((one.likelihood for one in self.explained), key=lambda one: one.log_evidence)
+
     def gain(self, key):
         """Gain of a cause at a place over none, summed over the likelihoods."""
         return float(self._log_sum([explained.by_key[key].gain for explained in self.explained]))
@@ -160,10 +165,14 @@ class Evidence:
 
     def best(self, key):
         """Explanation by a cause at a place beside the likelihood that speaks loudest for it."""
+        return self.loudest(key).by_key[key]
+
+    def loudest(self, key):
+        """`Explained` beside the likelihood that speaks loudest for a cause at a place."""
         speaks = [
             explained.by_key[key].gain + explained.likelihood.log_evidence for explained in self.explained
         ]
-        return self.explained[int(np.argmax(speaks))].by_key[key]
+        return self.explained[int(np.argmax(speaks))]
 
     def fits(self, cause, places):
         """All `Fit` of a cause at places that cannot be told apart, with the logarithms of their weights.

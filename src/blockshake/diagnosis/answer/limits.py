@@ -1,55 +1,160 @@
 """Sizes from which causes would be seen, before any cause is looked for; and motions that the sensors do not show."""
 
-import numpy as np
+from dataclasses import replace
 
-from blockshake.diagnosis.answer.answer import needed_of, needed_of_slab
+import numpy as np
+from scipy.special import ndtri
+
+from blockshake.diagnosis.answer.answer import needed_of, needed_of_slab, soft_gains
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_name
+from blockshake.diagnosis.evidence.explanation import best_of, mean_evidence
+from blockshake.diagnosis.evidence.slab_motion import explain_lift, slab_turns
+from blockshake.effects.joint_compliance import COMPLIANCES
+from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
 from blockshake.effects.registry import EFFECTS
 from blockshake.measurement.motion.body_poses import PLANAR, POSE
 
-_USUAL_GAP = 0.02  # m, at which a stop's limit is told
+SEEN = 0.9  # chance with which the sensors' noise lets a cause of its limit be seen
+SURELY = float(ndtri(SEEN))  # standard deviations of the gain, by which the mean one exceeds what is needed
+_TRIED = (5.0, 9.0)  # standard deviations of an amplitude, at which its gain is computed
+_LIFTS = np.geomspace(1e-4, 1.0, 60)  # of the end of the prior, at which a vertical motion is tried
 _LOST = 0.1  # of a test, for which a motion may be unknown without a word
 
 
-def limits_of(evidence, slab):
-    """Sizes from which effects would be seen, by effect and place.
+def limits_of(evidence, slabs, closed, without=()):
+    """Sizes from which effects would be seen in nine of ten campaigns of the same motion, by effect and place.
 
     Parameters
     ----------
     evidence : Evidence or None
-    slab : dict of str to Explanation
+    slabs : list of SlabMotion
+    closed : dict of str to ClosedJoint
+    without : sequence of str
+        Effects that are left out.
 
     Returns
     -------
     dict of str to dict of str to float
         Of the effect's first parameter, in its unit; only places where the tests tell it.
+
+    Notes
+    -----
+    With the standard deviation s of its amplitude, nuisances free, a cause of the size a has the mean gain ``q (a /
+    s)^2 - o``: q is one half but for what the grid of variants lacks, and o is what averages over sizes, variants and
+    places cost. The gain scatters with the sensors' noise by ``a / s``.
     """
-    limits_by_name = {}
-    for name, explained in slab.items():
-        fit = explained.best
-        error = float(np.sqrt(fit.covariance[0, 0]))
-        needed = needed_of_slab(name)
-        limit = _parameter(
-            name, fit.values, error * np.sqrt(2.0 * needed + 2.0 * np.log(fit.scales[0] / error + 1.0))
-        )
-        if _possible(name, limit):
-            limits_by_name[name] = {EVERYWHERE: limit}
-    if evidence is None:
-        return limits_by_name
-    loudest = max(evidence.explained, key=lambda one: one.likelihood.log_evidence).likelihood
-    tried = {}
-    for (name, place), variants in evidence.tried.variants.items():
-        tried.setdefault(name, {})[place] = variants
-    for name, by_place in tried.items():
-        needed = needed_of(name, evidence.tests[0].seen.tree) + np.log(len(by_place))
-        limits = {place: _limit(name, loudest, variants, needed) for place, variants in by_place.items()}
-        limits_by_name[name] = {place: limit for place, limit in limits.items() if _possible(name, limit)}
-    return limits_by_name
+    limits = {}
+    for name, effect in EFFECTS.items():
+        if effect.turns and name not in without:
+            variants = list(zip(*(effect.turns(slab) for slab in slabs), strict=True))
+            limits[name] = _by_place(name, slab_turns(slabs), {EVERYWHERE: variants}, needed_of_slab(name))
+        if effect.lifts and name not in without:
+            limits[name] = {EVERYWHERE: _lifted(name, slabs)}
+    if evidence is not None:
+        loudest, tried = evidence.usual, {}
+        for (name, place), variants in evidence.tried.variants.items():
+            tried.setdefault(name, {})[place] = variants
+        for name, by_place in tried.items():
+            needed = needed_of(name, evidence.tests[0].seen.tree)
+            if name == JOINT_COMPLIANCE.name:
+                limits[name] = _soft(loudest, by_place, needed, closed)
+            else:
+                limits[name] = _by_place(name, loudest, by_place, needed)
+    return {
+        name: {
+            place: from_null(name, size)
+            for place, size in by_place.items()
+            if size is not None and size <= largest(name)
+        }
+        for name, by_place in limits.items()
+    }
 
 
-def _possible(name, limit):
+def largest(name):
+    """Distance from an effect's null value to the end of its prior on the side of the visible size."""
     size = EFFECTS[name].parameters[0]
-    return size.lower <= limit <= size.upper
+    return abs((size.upper if size.visible > size.null else size.lower) - size.null)
+
+
+def from_null(name, distance):
+    """The size of an effect at a distance from its null value, on the side of the visible one."""
+    size = EFFECTS[name].parameters[0]
+    return float(size.null + np.sign(size.visible - size.null) * distance)
+
+
+def usual_column(name, variants, likelihood):
+    """Whitened rows, (n_rows,), of the variant whose parameters beside the size are nearest to their usual values.
+
+    Of several, such as an oscillator of any damping, the one of which the likelihood tells least. With them one over
+    the variance of the amplitude, nuisances free.
+    """
+    usual = {one.name: one.null for one in EFFECTS[name].parameters[1:]}
+
+    def away(variant):
+        values = variant[0].values
+        return sum(abs(np.log(values[key] / null)) for key, null in usual.items() if key in values)
+
+    nearest = min(map(away, variants))
+    units = [
+        likelihood.whiten([columns.rows[:, :1] for columns in variant])
+        for variant in variants
+        if away(variant) == nearest
+    ]
+    precisions = [float(likelihood.normal_equations(unit)[1][0, 0]) for unit in units]
+    least = int(np.argmin(precisions))
+    return units[least][:, 0], precisions[least]
+
+
+def _by_place(name, likelihood, by_place, needed):
+    """Distance of the limit from the null value by place; None where no row tells it."""
+    found = {}
+    for place, variants in by_place.items():
+        unit, precision = usual_column(name, variants, likelihood)
+        if not precision > 0.0:
+            continue
+        gains = []
+        for many in _TRIED:
+            expected = replace(likelihood, value=many * precision**-0.5 * unit)
+            gains.append(
+                mean_evidence([best_of(expected, name, one, tried).gain for one, tried in by_place.items()])
+            )
+        share = (gains[1] - gains[0]) / (_TRIED[1] ** 2 - _TRIED[0] ** 2)
+        cost = share * _TRIED[0] ** 2 - gains[0] + needed
+        if share > 0.0:
+            root = np.sqrt(SURELY**2 + 4.0 * share * max(cost, 0.0))
+            found[place] = float((SURELY + root) / (2.0 * share) * precision**-0.5)
+    return found
+
+
+def _soft(likelihood, by_place, needed, closed):
+    """Of a soft layer, whose rows have no amplitude: the smallest compliance that closed and turned joints show."""
+    places, found = {*by_place, *closed}, {}
+    for place in sorted(places):
+        for number, compliance in enumerate(COMPLIANCES):
+            turned, stiff, square = 0.0, 0.0, 0.0
+            if place in by_place:
+                true = likelihood.whiten([columns.rows for columns in by_place[place][number]])
+                square = float(likelihood.normal_equations(true)[1][0, 0])
+                expected = replace(likelihood, value=true[:, 0])
+                turned = best_of(expected, JOINT_COMPLIANCE.name, place, by_place[place]).gains
+            if place in closed:
+                square += compliance**2 * closed[place].information
+                stiff = closed[place].expected(compliance)
+            gain = mean_evidence(soft_gains(turned, stiff)) - np.log(len(places))
+            if gain - SURELY * np.sqrt(square) > needed:
+                found[place] = float(compliance)
+                break
+    return found
+
+
+def _lifted(name, slabs):
+    """Of a vertical motion of the slab in proportion to the horizontal one: the smallest that is tried and seen."""
+    deviation = float(np.sqrt(explain_lift(EFFECTS[name], slabs).best.covariance[0, 0]))
+    for size in largest(name) * _LIFTS:
+        gain = explain_lift(EFFECTS[name], [replace(slab, lift=size * slab.travel) for slab in slabs]).gain
+        if gain - SURELY * size / deviation > needed_of_slab(name):
+            return float(size)
+    return None
 
 
 def excluded_above(limits, structure):
@@ -63,40 +168,6 @@ def excluded_above(limits, structure):
             size = effect.parameters[0]
             sizes[name] = max(by_place.values(), key=lambda value: abs(value - size.null))
     return sizes
-
-
-def _limit(name, likelihood, variants, needed):
-    """The size, in the effect's own unit, at which the gain reaches what is needed; infinite where no row tells it.
-
-    With the standard deviation s of the amplitude, nuisances free, an amplitude a gains
-    ``a^2 / (2 s^2) - ln(1 + scale^2 / s^2) / 2`` in the mean. It is that of the usual variant; of an effect without an
-    amplitude the smallest variant that would be seen.
-    """
-    if variants[0][0].scales is None:
-        for variant in variants:
-            if _gram(likelihood, variant) >= 2.0 * needed:
-                return _parameter(name, variant[0].values, 1.0)
-        return np.inf
-    usual = min(variants, key=lambda variant: abs(variant[0].values.get("gap", _USUAL_GAP) - _USUAL_GAP))
-    gram = _gram(likelihood, usual)
-    if not gram > 0.0:
-        return np.inf
-    size = float(np.sqrt((2.0 * needed + np.log1p(gram * usual[0].scales[0] ** 2)) / gram))
-    return _parameter(name, usual[0].values, size)
-
-
-def _gram(likelihood, variant):
-    """One over the variance of a variant's first amplitude, nuisances free."""
-    return float(
-        likelihood.normal_equations(likelihood.whiten([columns.rows[:, :1] for columns in variant]))[1][0, 0]
-    )
-
-
-def _parameter(name, values, size):
-    if "gap" in values:
-        return float(size)
-    read = EFFECTS[name].reads(values, np.array([size]), 0.0)
-    return float(np.broadcast_to(read[EFFECTS[name].parameters[0].name], 1)[0])
 
 
 def cannot_see(seen_tests):

@@ -1,5 +1,7 @@
 """Rotation of closed joints against the moment that they carry: evidence of a soft layer, by joint and compliance."""
 
+from typing import NamedTuple
+
 import numpy as np
 from scipy.linalg import solveh_banded
 
@@ -13,21 +15,36 @@ _COLOURED, _MEMORY, _CONSTANT = 8e-6, 0.3, 2e-5  # rad, s, rad
 _NOISE_SHARE, _LEAST_NOISE, _RIDGE = 0.8, 1e-5, 0.1
 
 
-def closed_joint_gains(tests):
-    """Gain of every compliance in every joint, over that of elastic blocks alone.
+class ClosedJoint(NamedTuple):
+    """Rotation of a closed joint over its compliance, beside that of elastic blocks alone.
+
+    ``target`` and ``information`` [N/m3, (N/m3)^2]: of the compliance, such that c gains ``c target - c^2 information /
+    2``; a soft layer c has the target ``c information`` in the mean.
+    """
+
+    target: float
+    information: float
+
+    @property
+    def gains(self):
+        """Gain of every compliance, (n_compliances,)."""
+        return COMPLIANCES * self.target - 0.5 * COMPLIANCES**2 * self.information
+
+    def expected(self, compliance):
+        """Mean gain of every compliance where the joint has this one."""
+        return self._replace(target=compliance * self.information).gains
+
+
+def closed_joints(tests):
+    """`ClosedJoint` by joint; only of structures whose joints are a tree, and of joints that are closed long enough.
 
     Parameters
     ----------
     tests : list of SeenTest
-
-    Returns
-    -------
-    dict of str to float64 array, shape (n_compliances,)
-        By joint; only of structures whose joints are a tree, and of joints that are closed for long enough.
     """
     if not tests[0].tree:
         return {}
-    gains = {}
+    joints = {}
     for face in range(len(tests[0].faces)):
         rows = [read for read in (_rows(test, face) for test in tests) if read is not None]
         if not rows:
@@ -36,8 +53,8 @@ def closed_joint_gains(tests):
         values = [turn - _NOMINAL * slope for turn, slope in zip(turns, slopes, strict=True)]
         likelihood = from_rows(covariances, values, [[_SPREAD * slope for slope in slopes]])
         target, gram = likelihood.normal_equations(likelihood.whiten([slope[:, None] for slope in slopes]))
-        gains[tests[0].faces[face].name] = COMPLIANCES * target[0] - 0.5 * COMPLIANCES**2 * gram[0, 0]
-    return gains
+        joints[tests[0].faces[face].name] = ClosedJoint(float(target[0]), float(gram[0, 0]))
+    return joints
 
 
 def _rows(test, face):

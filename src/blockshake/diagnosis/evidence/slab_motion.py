@@ -117,7 +117,7 @@ def explain_slab(slabs, without=()):
         if effect.turns and name not in without:
             explanations[name] = _turning(effect, slabs, likelihoods)
         if effect.lifts and name not in without:
-            explanations[name] = _lifting(effect, slabs)
+            explanations[name] = explain_lift(effect, slabs)
     return explanations
 
 
@@ -159,8 +159,8 @@ def _turning(effect, slabs, likelihoods):
     return Explanation(effect.name, "all", float(mean_evidence(gains)), tuple(fits), np.array(gains))
 
 
-def _lifting(effect, slabs):
-    """A random vertical motion of any size against none, of a base that gives under the force on it or does not."""
+def explain_lift(effect, slabs):
+    """`Explanation` by an effect that lifts the slab: a random motion of any size, of a base that gives or does not."""
     logs = np.zeros((2, 1 + len(effect.lifts(slabs[0]))))
     for slab in slabs:
         by = ((_LIFT_BY_FORCE, slab.force), (_LIFT_BY_TURN, slab.turn), (_LIFT_BY_TURN, np.abs(slab.turn)))

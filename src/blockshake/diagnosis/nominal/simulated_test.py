@@ -15,7 +15,7 @@ from blockshake.store import load_made
 _SLOW = 0.04  # s, standard deviation of a Gaussian that is some 0.1 s wide at half its height
 
 
-def simulated_test(planned, draw, extension=None):
+def simulated_test(planned, draw, extension=None, accelerometers=False):
     """Synthetic readings that a sampled model gives for a planned test, as in a campaign's test file.
 
     Parameters
@@ -25,6 +25,8 @@ def simulated_test(planned, draw, extension=None):
     draw : Draw
     extension : callable, optional
         Of an `Experiment`: the experiment with what the extended model has beside the nominal one.
+    accelerometers : bool
+        Whether they are read too.
 
     Returns
     -------
@@ -35,6 +37,7 @@ def simulated_test(planned, draw, extension=None):
     readings = {name: value for name, value in draw.noise.items() if name != "louder"}
     instruments = Instruments(
         marker_noise=draw.noise["louder"] * planned.sensors.marker_noise,
+        accelerometer_noise=draw.noise["louder"] * planned.sensors.accelerometer_noise,
         **readings,
     )
     structure = planned.structure.with_parameters(physical | placed(planned.structure, draw.places))
@@ -44,7 +47,8 @@ def simulated_test(planned, draw, extension=None):
         experiment = extension(experiment)
     run = simulate(
         experiment.structure, experiment.motion, draw.model, numerics,
-        time_step=draw.time_step, duration=planned.duration, output_rate=planned.clock.rate, accelerometers=False,
+        time_step=draw.time_step, duration=planned.duration, output_rate=planned.clock.rate,
+        accelerometers=accelerometers,
     )  # fmt: skip
     test = observe(run, experiment.structure, experiment.instruments, draw.seed).sel(
         marker=list(planned.markers)

@@ -3,9 +3,9 @@
 import numpy as np
 
 from blockshake.diagnosis.report.statement import not_told, sensor_causes, statement
-from blockshake.diagnosis.wording import chance_words, estimate_words, percent_words
+from blockshake.diagnosis.wording import chance_words, estimate_words, listed, name_of, percent_words
 from blockshake.effects.registry import title_of
-from blockshake.pages.blocks import Box, Figure, Items, Section, Text
+from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import BLACK, BLUE, LIGHT_GREY, new_figure, svg_of
 from blockshake.pages.units import printed
 from blockshake.pages.wording import sentence_case
@@ -38,7 +38,8 @@ def answer_section(diagnosed):
             )
         )
     items = _items(diagnosed)
-    return Section("Answer", "answer", (*blocks, *([Items(items)] if items else []), *_figures(diagnosed)))
+    further = [*([Items(items)] if items else []), *next_tests_table(diagnosed.verdict)]
+    return Section("Answer", "answer", (*blocks, *further, *_figures(diagnosed)))
 
 
 def _facts(diagnosed):
@@ -86,9 +87,31 @@ def _items(diagnosed):
             f"{title_of(one.effect)}, {', '.join(one.where)}" for one in diagnosed.parity.findings
         )
         items.append(f"Faults of sensors were found and taken out of the readings first: {faults}.")
-    if verdict.next_test:
+    if verdict.next_test and not verdict.next_tests:
         items.append(f"Measurement that would decide: {verdict.next_test}.")
     return tuple(items)
+
+
+def next_tests_table(verdict):
+    """Table of the measurements that would split the sets; an empty list without any."""
+    """The ranked measurements that would split what the tests do not tell apart."""
+    rows = [
+        (
+            sentence_case(one.test)[:-1],
+            listed([name_of(name) for name in one.between], "or"),
+            f"{100.0 * one.share:.0f} %",
+        )
+        for one in verdict.next_tests
+    ]
+    words = (
+        "Measurements that would split what the tests do not tell apart, and the share of such cases in which they "
+        "are expected to leave the true cause alone: from the odds, the sizes and the forces of these tests."
+    )
+    return (
+        [Table(words, ("Measurement", "Between", "Splits"), tuple(rows), "llr", (0.4, 0.45, 0.15))]
+        if rows
+        else []
+    )
 
 
 def _figures(diagnosed):

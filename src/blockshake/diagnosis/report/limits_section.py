@@ -19,8 +19,8 @@ def limits_section(diagnosed):
     ]  # fmt: skip
     blocks = [
         Text(
-            "A cause that is as large as its limit would have been seen beyond chance. The limits follow from "
-            "the forces and the noise of these tests, before any cause is looked for."
+            "A cause that is as large as its limit would have been seen in nine of ten campaigns of the same motion. "
+            "The limits follow from the forces and the noise of these tests, before any cause is looked for."
         ),
         _table(diagnosed),
     ]

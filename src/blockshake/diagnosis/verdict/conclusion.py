@@ -53,6 +53,7 @@ def conclude(decision, findings, kinds, caveats=(), measured=None):
     }
     # of one name the cause of the stronger part, which stands first, is the last and stays
     shown = [cause for part in reversed(decision.parts) for cause in reversed(part.causes)]
+    measurements = tuple(one for part in decision.parts for one in part.next_tests)
     return Verdict(
         decision=kind,
         causes=causes,
@@ -61,7 +62,8 @@ def conclude(decision, findings, kinds, caveats=(), measured=None):
         location={name: place for name, place in places.items() if place},
         misfit=_misfit(decision, sensors),
         excluded_above={name: size for name, size in decision.excluded_above.items() if name not in causes},
-        next_test=_next_test(causes),
+        next_test=_next_test(measurements, causes),
+        next_tests=measurements,
         gain=measured.gain,
         row_gain=measured.rows,
         runs=measured.runs,
@@ -114,10 +116,11 @@ def _misfit(decision, sensors):
     return Misfit(p=first.p, where=f"readings of {where}, against the other sensors")
 
 
-def _next_test(causes):
-    """The measurement that would decide between what is left."""
+def _next_test(measurements, causes):
+    """The measurements that would split the sets, or the one by which the registry tells the causes from others."""
+    ranked = [f"{one.test} (splits {100.0 * one.share:.0f} % of such cases)" for one in measurements]
     known = dict.fromkeys(EFFECTS[name].told_apart_by for name in causes[:2] if name in EFFECTS)
-    return "; ".join(known) or None
+    return "; ".join(ranked or known) or None
 
 
 class SensorCause(NamedTuple):

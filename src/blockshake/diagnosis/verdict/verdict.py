@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, JsonValue, model_validator
 
-from blockshake.diagnosis.answer.decision import Estimate
+from blockshake.diagnosis.answer.decision import Estimate, Measurement
 from blockshake.diagnosis.verdict.ladder import ESTABLISHED, NOTHING, ONE_OF, PROBABLE, UNKNOWN
 from blockshake.files import load_json, write_json
 from blockshake.statistics.resampling import limits_of
@@ -99,6 +99,7 @@ class Verdict(Strict):
     word: Literal[ESTABLISHED, PROBABLE, ONE_OF, UNKNOWN, NOTHING]
     missing: tuple[str, ...] = ()
     row_gain: Gain | None = None
+    next_tests: tuple[Measurement, ...] = ()
 
     @model_validator(mode="after")
     def _consistent(self):

@@ -1,0 +1,105 @@
+"""The plan as files and as a page: JSON, and one HTML page with the matrix and the ranked additions."""
+
+from blockshake.diagnosis.planning.plan import CAMPAIGNS, OF_ADDITIONS
+from blockshake.diagnosis.wording import name_of, named_place, size_words
+from blockshake.effects.registry import EFFECTS
+from blockshake.files import write_json
+from blockshake.pages.blocks import Document, Section, Table, Text, numbered
+from blockshake.pages.wording import number, sentence_case
+from blockshake.pages.writing import write_html
+
+_SHOWN = 3  # pairs of an addition
+
+
+def write_plan(folder, asked, told, additions):
+    """Write ``plan.json`` and ``plan.html`` of what `plan_campaign` gave."""
+    effects = {
+        name: {
+            "size": EFFECTS[name].parameters[0].name,
+            "unit": EFFECTS[name].parameters[0].unit,
+            "place": one.place,
+            "limits": one.limits,
+            "told_apart": {rival: size for rival, size in one.apart.items() if rival},
+        }
+        for name, one in told.items()
+    }
+    ranked = [
+        {**one._asdict(), "separates": [[name, rival or "nothing"] for name, rival in one.separates]}
+        for one in additions
+    ]
+    tests = list(asked.motions)
+    plan = {"structure": asked.structure.file.name, "tests": tests, "effects": effects, "additions": ranked}
+    write_json(f"{folder}/plan.json", plan)
+    write_html(f"{folder}/plan.html", _document(asked, told, additions))
+
+
+def matrix_rows(told):
+    """Header and rows of the matrix: by rival, the size from which each effect is told from it."""
+    rivals = dict.fromkeys([None, *(rival for one in told.values() for rival in one.apart)])
+    rows = [("told from", *told)]
+    for rival in rivals:
+        cells = [_cell(name, one, rival) for name, one in told.items()]
+        rows.append(("nothing" if rival is None else name_of(rival), *cells))
+    return rows
+
+
+def _cell(name, one, rival):
+    if not one.apart:
+        return "not seen"
+    if rival == name or (rival is not None and rival not in one.apart):
+        return ""
+    size = one.apart[rival]
+    return "never" if size is None else size_words(size, EFFECTS[name].parameters[0].unit, 2)
+
+
+def addition_rows(additions):
+    """Header and rows of the additions, the one that is worth most for its cost first."""
+    rows = [("one measurement more", "pairs", "cost", "separates above all")]
+    for one in additions:
+        pairs = [
+            f"{name_of(name)} from {name_of(rival) if rival else 'nothing'}" for name, rival in one.separates
+        ]
+        rows.append((one.words, number(one.pairs, 2), number(one.cost), "; ".join(pairs[:_SHOWN])))
+    return rows
+
+
+def _document(asked, told, additions):
+    header, *rows = matrix_rows(told)
+    bodies = asked.structure.body_names
+    places = "; ".join(
+        f"{name_of(name)}: {named_place(one.place, bodies)}"
+        for name, one in told.items()
+        if one.place != "all"
+    )
+    matrix = (
+        Text(
+            "SYNTHETIC: simulated nominal tests and the information of their rows. No structure was simulated with a "
+            "cause in it.",
+            strong=True,
+        ),
+        Table(
+            f"Sizes from which each effect (column) is seen, and told from each rival (row), in nine of ten campaigns: "
+            f"averaged over {CAMPAIGNS} nominal campaigns and the noise of the sensors, with the needs and odds of the "
+            "diagnosis. Never: not within the prior of the size. Empty: it shows in other readings, and is told apart "
+            f"as soon as it is seen. Where the tests tell least of it{f' ({places})' if places else ''}.",
+            ("Told from", *(sentence_case(name_of(name))[:-1] for name in header[1:])),
+            tuple(rows),
+            "l" * len(header),
+        ),
+    )
+    head, *ranked = addition_rows(additions)
+    more = Table(
+        f"One measurement more, ranked by the pairs that it separates for its cost. Pairs: sum over effects of their "
+        f"visible size and all rivals of the chance more to tell them apart, mean of {OF_ADDITIONS} nominal campaigns. "
+        "Static tests tell of the effect where the tests tell least of it.",
+        tuple(sentence_case(words)[:-1] for words in head),
+        tuple(ranked),
+        "lrrl",
+        (0.4, 0.1, 0.1, 0.4),
+    )
+    sections = (
+        Section("Effects that are seen and told apart", "matrix", matrix),
+        Section("One measurement more", "more", (more,)),
+    )
+    subtitle = f"{asked.structure.file.name}, tests {', '.join(asked.motions)}"
+    return numbered(Document("blockshake: plan of a campaign", subtitle, sections))

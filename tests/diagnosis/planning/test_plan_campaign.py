@@ -1,0 +1,93 @@
+"""The plan of a campaign as its command: files, matrix, ranked additions, and one line for bad input."""
+
+import json
+
+import pytest
+
+from blockshake.cli import main
+from blockshake.diagnosis.planning import plan
+from blockshake.diagnosis.planning.nominal_tests import load_asked
+from blockshake.errors import InputError
+from blockshake.files import PACKAGE, write_text
+
+STRUCTURE = str(PACKAGE.parents[1] / "hidden_effects" / "structures" / "single-block.yaml")
+SENSORS = """
+sensors: {marker_noise: 2.0e-4, accelerometer_noise: 0.05}
+markers:
+  - {name: a, body: slab, position: [0.0, -1.5, 0.0]}
+  - {name: b, body: BODY, position: [0.0, -1.2, 0.4]}
+  - {name: c, body: BODY, position: [0.3, -1.2, -0.4]}
+"""
+
+
+def test_the_command_writes_a_plan(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(plan, "CAMPAIGNS", 1)
+    monkeypatch.setattr(plan, "OF_ADDITIONS", 1)
+    asked = [
+        "plan-campaign",
+        STRUCTURE,
+        "--motions",
+        "alkion@5.5",
+        "--duration",
+        "5",
+        "--output",
+        str(tmp_path),
+    ]
+    assert main(asked) == 0
+    written = json.loads((tmp_path / "plan.json").read_text())
+    assert written["tests"] == ["alkion@5.5"]
+    limits = written["effects"]["eccentricity"]["limits"]
+    assert 0.0 < limits["block-1"] < 0.15
+    # nothing is told apart before it is seen
+    for one in written["effects"].values():
+        seen = one["limits"][one["place"]]
+        assert all(size is None or abs(size) >= 0.999 * abs(seen) for size in one["told_apart"].values())
+    worth = [one["pairs"] / one["cost"] for one in written["additions"]]
+    assert worth == sorted(worth, reverse=True)
+    words = [one["words"] for one in written["additions"]]
+    assert {
+        "alkion@5.5 once more",
+        "one more accelerometer on block-1",
+        "weigh block-1 on two supports",
+    } <= set(words)
+    printed = capsys.readouterr().out
+    assert "told from" in printed
+    assert "SYNTHETIC" in (tmp_path / "plan.html").read_text()
+
+
+def test_sensors_of_a_file_are_the_chosen_ones_and_their_noise_counts(tmp_path):
+    write_text(tmp_path / "sensors.yaml", SENSORS.replace("BODY", "block-1"))
+    asked = load_asked(STRUCTURE, ["alkion"], str(tmp_path / "sensors.yaml"))
+    assert asked.chosen == {"a", "b", "c"}
+    assert asked.sensors.marker_noise == 2e-4
+    assert set(asked.motions) == {"alkion@1"}
+
+
+@pytest.mark.parametrize(
+    ("motions", "sensors", "words"),
+    [
+        (["alkion@x"], None, "expected NAME or NAME@SCALE"),
+        (["alkion", "alkion@1.0"], None, "once"),
+        (["no-such-motion"], None, "no-such-motion"),
+        (["alkion"], SENSORS.replace("BODY", "block-9"), "block-9"),
+        (["alkion"], "markers: [{name: b, body: block-1, position: [0, 0, 0]}]", "on a driven body"),
+        (["alkion"], "marker: []", "unknown key"),
+    ],
+)
+def test_bad_input_is_one_line(tmp_path, motions, sensors, words):
+    file = None
+    if sensors:
+        file = str(tmp_path / "sensors.yaml")
+        write_text(file, sensors)
+    with pytest.raises(InputError, match=words) as error:
+        load_asked(STRUCTURE, motions, file)
+    assert "\n" not in str(error.value)
+
+
+def test_costs_of_a_file_replace_the_defaults(tmp_path):
+    write_text(tmp_path / "costs.yaml", "jack: 3.0\n")
+    assert plan.load_costs(tmp_path / "costs.yaml").jack == 3.0
+    assert plan.load_costs(None).jack == 1.0
+    write_text(tmp_path / "costs.yaml", "crane: 3.0\n")
+    with pytest.raises(InputError, match="unknown key"):
+        plan.load_costs(tmp_path / "costs.yaml")
