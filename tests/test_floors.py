@@ -39,7 +39,7 @@ ROOMS_OF_STUDY = [
     ["remarks", "sampling"],
     ["ensembles", "stiffness"],
     ["comparison", "fragility", "sensitivity"],
-    ["calibration"],
+    ["calibration", "extension"],
     ["config_checks"],
     ["analyses"],
     ["config"],

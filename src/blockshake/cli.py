@@ -166,6 +166,11 @@ def _parser():
     command.add_argument("--effort", default="standard", metavar="quick|standard|deep")
     command.add_argument("--cores", type=int, metavar="N", help="default: all")
 
+    command = add("extend-study", _extend_study, "a study in which the cause of a verdict is a variable")
+    command.add_argument("verdict", metavar="VERDICT.json", help="of `blockshake diagnose`")
+    command.add_argument("study", metavar="STUDY.yaml", help="an ordinary study of what was tested")
+    command.add_argument("--output", required=True, metavar="EXTENDED.yaml")
+
     command = add("check", _check, "say what is wrong with structure, motion or study files")
     command.add_argument("files", nargs="+", metavar="FILE")
     command.add_argument("--picture", metavar="PICTURE", help="of one structure: .png, .pdf or .svg")
@@ -349,6 +354,13 @@ def _diagnose(options):
         return stopped.exit_code
     named = f" ({verdict.decision}): {', '.join(verdict.causes)}" if verdict.causes else ""
     print(f"{verdict.word}{named}; {options.output}/report.html")
+    return 0
+
+
+def _extend_study(options):
+    from blockshake.diagnosis.gain.extended_study import extend_study
+
+    print("\n".join(extend_study(options.verdict, options.study, options.output)))
     return 0
 
 

@@ -92,15 +92,15 @@ def batch_ids(count):
     ]
 
 
-def batch_files(wildcards, model=None):
+def batch_files(wildcards, model=None, case=None):
     """Batch files of a case by a model, of the wildcards if none is named."""
-    model = model or wildcards.model
+    model, case = model or wildcards.model, case or wildcards.case
     return expand(
         "results/{study}/runs/{model}/{case}/{batch}.nc",
         study=wildcards.study,
         model=model,
-        case=wildcards.case,
-        batch=batch_ids(CHECKED.samples(model, wildcards.case)),
+        case=case,
+        batch=batch_ids(CHECKED.samples(model, case)),
     )
 
 
