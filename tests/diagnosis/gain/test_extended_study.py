@@ -203,8 +203,8 @@ MASS = made_up_cause(
     ("causes", "changed", "line"),
     [
         ((), {"decision": "none", "causes": (), "word": "no misfit larger than chance"},
-         "verdict.json: extension: expected a cause in the blocks, joints or forces; its word is: no misfit"),
-        ((PITCH,), {}, "verdict.json: extension: expected a cause that a structure file can state and that lasts"),
+         "verdict.json: extension: expected a cause that acts in blocks, joints or forces and lasts; its word is: no"),
+        ((PITCH,), {}, "verdict.json: extension: blocks, joints or forces and lasts; found table-pitch"),
         ((BLOW,), {}, "found blow"),
         ((FREE,), {}, "found unknown-force"),
         ((CAUSES["weak-joint"],), {"structure": "0123456789ab"}, "study.yaml: cases: expected a case of the structure"),

@@ -32,34 +32,36 @@ def test_the_same_samples_differ_by_what_the_cause_adds(pair):
     at = changes({"ls-dem": pair(falls=False)}, None).sel(model="ls-dem")
     assert int(at["paired"]) == SAMPLES
     for quantity in ("median_drift", "drift"):
-        assert_allclose(at["change"].sel(quantity=quantity), 0.010, atol=1e-12)
+        change = at.sel(quantity=quantity, side="change")
+        assert_allclose(change["value"], 0.010, atol=1e-12)
         # every pair differs by as much: no draw of pairs has another change
-        assert_allclose(at["change_interval"].sel(quantity=quantity), 0.010, atol=1e-12)
-    assert_allclose(at["change"].sel(quantity="uplift"), 0.4 * 0.010)  # half the width times the angle
-    assert float(at["change"].sel(quantity="collapse")) == 0.0
-    low, high = at["change_interval"].sel(quantity="collapse").values
+        assert_allclose(change["value_interval"], 0.010, atol=1e-12)
+    change = at.sel(side="change")
+    assert_allclose(change["value"].sel(quantity="uplift"), 0.4 * 0.010)  # half the width times the angle
+    assert float(change["value"].sel(quantity="collapse")) == 0.0
+    low, high = change["value_interval"].sel(quantity="collapse").values
     assert low < 0.0 < high
-    assert np.isnan(at["change"].sel(quantity="safe_scale"))
+    assert np.isnan(change["value"].sel(quantity="safe_scale"))
 
 
 def test_no_cause_changes_nothing(pair):
     at = changes({"ls-dem": pair(0.0, falls=False)}, None).sel(model="ls-dem")
-    known = at["quantity"].values != "safe_scale"
-    assert (at["change"].values[known] == 0.0).all()
-    assert (at["change_interval"].transpose("bound", "quantity").values[0, known] <= 0.0).all()
-    assert (at["change_interval"].transpose("bound", "quantity").values[1, known] >= 0.0).all()
+    change = at.sel(side="change").drop_sel(quantity="safe_scale")
+    assert (change["value"] == 0.0).all()
+    assert (change["value_interval"].sel(bound="lower") <= 0.0).all()
+    assert (change["value_interval"].sel(bound="upper") >= 0.0).all()
 
 
 def test_shares_have_their_exact_limits(pair):
     at = changes({"ls-dem": pair()}, None).sel(model="ls-dem", quantity="collapse")
-    assert float(at["extended"]) == pytest.approx(1.0 / SAMPLES)
-    assert_allclose(at["extended_interval"], share_interval(1, SAMPLES))
-    assert_allclose(at["without_interval"], share_interval(0, SAMPLES))
+    assert float(at["value"].sel(side="extended")) == pytest.approx(1.0 / SAMPLES)
+    assert_allclose(at["value_interval"].sel(side="extended"), share_interval(1, SAMPLES))
+    assert_allclose(at["value_interval"].sel(side="without"), share_interval(0, SAMPLES))
     # Zou and Donner (2008), Eq. (4): from the limits of both shares of samples that fall in one alone
     (low_a, high_a), (low_b, high_b) = share_interval(0, SAMPLES), share_interval(1, SAMPLES)
     share = 1.0 / SAMPLES
     expected = [share - np.hypot(share - low_b, high_a), share + np.hypot(high_b - share, 0.0 - low_a)]
-    assert_allclose(at["change_interval"], expected)
+    assert_allclose(at["value_interval"].sel(side="change"), expected)
 
 
 def test_naming_the_cause_gains_all_there_is_where_the_record_is_one_of_its_members(
@@ -96,6 +98,6 @@ def test_safe_scales_stand_beside_each_other(pair):
 
     found = changes({"ls-dem": pair()}, None)
     of = with_fragility(found, "ls-dem", fragility(2.0, 1.8, 2.3), fragility(1.5, 1.1, 1.7))
-    at = of.sel(model="ls-dem", quantity="safe_scale")
-    assert float(at["change"]) == -0.5
-    assert_allclose(at["change_interval"], [-0.5 - np.hypot(0.4, 0.3), -0.5 + np.hypot(0.2, 0.2)])
+    at = of.sel(model="ls-dem", quantity="safe_scale", side="change")
+    assert float(at["value"]) == -0.5
+    assert_allclose(at["value_interval"], [-0.5 - np.hypot(0.4, 0.3), -0.5 + np.hypot(0.2, 0.2)])

@@ -13,14 +13,13 @@ import blockshake
 from blockshake.diagnosis.answer.decision import MEMBERS
 from blockshake.diagnosis.gain.extended_model import can_extend, extended_experiment
 from blockshake.diagnosis.verdict.verdict import load_verdict
-from blockshake.effects.base_compliance import EFFECT as BASE_COMPLIANCE
 from blockshake.effects.effect import Experiment
 from blockshake.effects.places import nowhere
 from blockshake.effects.registry import EFFECTS
 from blockshake.errors import InputError
 from blockshake.files import check_output, file_digest, load_yaml, write_text
 from blockshake.geometry.schema import EXTENSION, StructureFile
-from blockshake.geometry.structure import load_structure
+from blockshake.geometry.structure import Structure, load_structure
 from blockshake.geometry.structure_file import dotted_values, replace_into
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.campaigns.campaign_folder import copy_beside
@@ -31,16 +30,20 @@ from blockshake.study.sampling.correlation_target import nearest_correlation
 from blockshake.study.sampling.latin_hypercube import complete_correlation
 from blockshake.validation import validated
 
-_STEPS = 10  # of the probability, between tabulated quantiles
+_OF_THE_TABLE = ("base-compliance",)  # beside those that act on the input: the slab's motion has it already
+_STEPS = np.linspace(0.0, 1.0, 11)  # of the probability, at which quantiles are tabulated
 _DIGITS = 6  # of a value
 _RISE = 1e-4  # of their range, by which quantiles of equal members rise
 _TOLD = 0.4  # correlation that 99 of 100 sets of 40 unrelated members stay below
 
 
 class _Extended(NamedTuple):
-    """A structure with a cause: its mapping at the medians, and members of what varies, (n_members,) by dotted name."""
+    """A structure without and with a cause: the mapping of the latter at the medians, its file, and members of what
+    varies, (n_members,) by dotted name."""
 
+    structure: Structure
     mapping: dict
+    path: Path
     members: dict
 
 
@@ -72,86 +75,94 @@ def extend_study(verdict, study, output):
     -----
     The cause enters by `extended_experiment`, as in the diagnosis: each member of its posterior makes a structure, and
     the values by which these differ are the variables, tabulated by the quantiles of the members. Equal ones are
-    linked; correlations that 40 members tell from none are kept.
+    linked; correlations that 40 members tell from none are kept. Calibrations and diagnoses stay with the study that
+    is extended.
     """
-    found, config, mapping = load_verdict(verdict), load_config(study), load_yaml(study)
-    output = check_output(output)
+    found, config, output = load_verdict(verdict), load_config(study), check_output(output)
     if output.suffix not in (".yaml", ".yml"):
         raise InputError(output, "", f"expected a YAML file, {output}.yaml")
     if config.extension is not None:
         raise InputError(study, "extension", "expected a study that has no cause yet")
     causes, lines = _causes(found, verdict)
-    title = " and ".join(cause.title for cause in causes)
-    extended, files, cases, named_by = {}, {}, [], []
+    extended, pairs, cases, named_by = {}, {}, [], []
     for case in config.cases:
         structure = load_structure(case.structure)
         if any(map(_has_place, causes)) and structure.content != found.structure:
             lines.append(f"{case.name} is left out: its structure is not the one that was tested")
             continue
-        name = f"{case.name}-extended"
+        path, name = (
+            output.with_name(f"{output.stem}-{Path(case.structure).stem}.yaml"),
+            f"{case.name}-extended",
+        )
         if case.structure not in extended:
-            path = output.with_name(f"{output.stem}-{Path(case.structure).stem}.yaml")
-            extended[case.structure], files[case.structure] = _extended(structure, causes, title), path
+            extended[case.structure] = _extended(structure, causes, path)
         given = case.model_dump(mode="json", exclude_defaults=True)
-        cases += [given, {**given, "name": name, "structure": str(files[case.structure])}]
+        cases += [given, {**given, "name": name, "structure": str(path)}]
+        pairs[name] = case.name
         if case.measured and _digest(case.measured) in found.tests.values():
             named_by.append(name)
     if not cases:
         expected = "expected a case of the structure that the verdict is of, as its cause has a place there"
         raise InputError(study, "cases", expected)
-    _check_clash(config.ensemble.distributions, extended, study)
+    _check_clash(config.ensemble.distributions, extended.values(), study)
     variables = {name: values for one in extended.values() for name, values in one.members.items()}
-    pairs = {case["name"]: nominal["name"] for nominal, case in zip(cases[::2], cases[1::2], strict=True)}
-    correlation = output.with_name(f"{output.stem}-correlation.csv")
-    ensemble, target = _ensemble(config.ensemble, variables, correlation)
-    kept = {key: value for key, value in mapping.items() if key not in ("calibration", "diagnosis")}
+    ensemble, target = _ensemble(
+        config.ensemble, variables, output.with_name(f"{output.stem}-correlation.csv")
+    )
+    kept = {
+        key: value
+        for key, value in load_yaml(study).items()
+        if key not in ("calibration", "diagnosis", "fragility")
+    }
     whole = {
         **kept,
         "name": f"{config.name}-extended",
-        "description": f"{config.description}; without and with {title}",
+        "description": f"{config.description}; without and with {_title(causes)}",
         "cases": cases,
         "ensemble": ensemble,
         "extension": {"cases": pairs, "named_by": named_by},
     }
-    if config.fragility is not None:
-        climbs = [case for case in config.fragility.cases if case in pairs.values()]
-        climbs += [case for case, nominal in pairs.items() if nominal in climbs]
-        whole["fragility"] = {**mapping["fragility"], "cases": climbs}
-        if not climbs:
-            del whole["fragility"]
-    texts = {
-        files[name]: _header(verdict, found, causes) + _text(one.mapping) for name, one in extended.items()
-    }
-    if target is not None:
-        texts[correlation] = target.to_csv()
-    texts[output] = _header(verdict, found, causes, f"snakemake -c2 --configfile {output}") + _text(whole)
-    for name, one in extended.items():
-        meshes = {shape["mesh"] for shape in one.mapping["shapes"].values() if shape.get("mesh")}
-        for mesh in meshes:
-            copy_beside(load_structure(name).folder / mesh, output.parent / mesh)
+    climbs = [name for name in config.fragility.cases if name in pairs.values()] if config.fragility else []
+    if climbs:
+        climbs += [name for name, nominal in pairs.items() if nominal in climbs]
+        whole["fragility"] = {**config.fragility.model_dump(mode="json"), "cases": climbs}
+    header = _header(verdict, found, causes)
+    texts = {one.path: header + _text(one.mapping) for one in extended.values()}
+    texts |= {Path(ensemble["correlation"]): target.to_csv()} if target is not None else {}
+    texts[output] = f"{header}# Run: snakemake -c2 --configfile {output}\n{_text(whole)}"
     _write(texts, output)
-    named = [f"  {name} [{unit_of(name.removeprefix(EXTENSION))}]" for name in variables]
-    return [*lines, *map(str, texts), *named]
+    for one in extended.values():
+        for mesh in {shape.mesh for shape in one.structure.file.shapes.values()} - {None}:
+            copy_beside(one.structure.folder / mesh, output.parent / mesh)
+    return [
+        *lines,
+        *map(str, texts),
+        *(f"  {name} [{unit_of(name.removeprefix(EXTENSION))}]" for name in variables),
+    ]
 
 
 def _causes(found, verdict):
     """Causes of a verdict that a structure can hold, and lines on the others."""
-    if not found.extension:
-        what = f"its word is: {found.word}" + (f" ({', '.join(found.causes)})" if found.causes else "")
-        raise InputError(verdict, "extension", f"expected a cause in the blocks, joints or forces; {what}")
-    causes, others = [], []
-    for cause in found.extension:
-        held = cause.outside or EFFECTS[cause.name].acts not in ("input", "observation")
-        held = held and can_extend(cause) and cause.name != BASE_COMPLIANCE.name
-        (causes if held else others).append(cause)
-    if not causes:
-        names = ", ".join(cause.name for cause in others)
-        expected = f"expected a cause that a structure file can state and that lasts, found {names}"
-        raise InputError(verdict, "extension", expected)
-    lines = [f"{cause.name} is left out: no structure file can state it" for cause in others]
+    held = [cause for cause in found.extension if _can_state(cause)]
+    others = [cause.name for cause in found.extension if not _can_state(cause)]
+    if not held:
+        expected = "expected a cause that acts in blocks, joints or forces and lasts"
+        what = f"found {', '.join(others)}" if others else f"its word is: {found.word}"
+        raise InputError(verdict, "extension", f"{expected}; {what}")
+    lines = [f"{name} is left out: no structure file can state it" for name in others]
     if found.decision == "ambiguous":
-        lines.append(f"the verdict is: one of {', '.join(found.causes)}; the likeliest is taken")
-    return causes, lines
+        lines.append(f"the verdict is one of several; the likeliest is taken: {_title(held)}")
+    return held, lines
+
+
+def _can_state(cause):
+    """Whether a structure file can state a cause: it is none of the table's or of the sensors', and it lasts."""
+    held = cause.outside or EFFECTS[cause.name].acts not in ("input", "observation")
+    return held and cause.name not in _OF_THE_TABLE and can_extend(cause)
+
+
+def _title(causes):
+    return " and ".join(cause.title for cause in causes)
 
 
 def _has_place(cause):
@@ -159,7 +170,7 @@ def _has_place(cause):
     return cause.outside or EFFECTS[cause.name].places is not nowhere
 
 
-def _extended(structure, causes, title):
+def _extended(structure, causes, path):
     """`_Extended` of a structure; members whose structures have other entries than most are left out."""
     made = []
     for number in range(MEMBERS):
@@ -168,27 +179,28 @@ def _extended(structure, causes, title):
             experiment = extended_experiment(experiment, cause, number, "")
         made.append(experiment.structure.file.model_dump(mode="json"))
     values = [dotted_values(mapping) for mapping in made]
+    # entries with what is no number in them, such as the side of a stop
     forms = [
-        tuple((key, value) for key, value in one.items() if not isinstance(value, float)) for one in values
+        repr([(key, not isinstance(value, float) and value) for key, value in one.items()]) for one in values
     ]
-    forms = [repr((sorted(one), form)) for one, form in zip(values, forms, strict=True)]
     ((usual, _),) = Counter(forms).most_common(1)
     kept = [number for number, form in enumerate(forms) if form == usual]
-    mapping, values = made[kept[0]], [values[number] for number in kept]
-    scalars = [key for key, value in values[0].items() if isinstance(value, float)]
-    drawn = {key: np.array([one[key] for one in values]) for key in scalars}
-    members = {EXTENSION + key: one for key, one in drawn.items() if np.ptp(one) > 0.0}
-    for key, drawn in members.items():
-        replace_into(mapping, key, _rounded(np.median(drawn)), structure.source)
-    mapping |= {"name": f"{mapping['name']}-extended", "extension": title}
-    stated = validated(StructureFile, mapping, structure.source)
-    return _Extended(stated.model_dump(mode="json", exclude_defaults=True), members)
+    scalars = [key for key, value in values[kept[0]].items() if isinstance(value, float)]
+    drawn = {EXTENSION + key: np.array([values[number][key] for number in kept]) for key in scalars}
+    members = {key: one for key, one in drawn.items() if np.ptp(one) > 0.0}
+    mapping = made[kept[0]] | {"name": f"{structure.file.name}-extended", "extension": _title(causes)}
+    for key, one in members.items():
+        replace_into(mapping, key, _rounded(np.median(one)), structure.source)
+    stated = validated(StructureFile, mapping, structure.source).model_dump(
+        mode="json", exclude_defaults=True
+    )
+    return _Extended(structure, stated, path, members)
 
 
 def _check_clash(variables, extended, study):
     """Refuse variables of a study that do not reach a block whose own value the cause states."""
-    for structure, one in extended.items():
-        for body in load_structure(structure).file.bodies:
+    for one in extended:
+        for body in one.structure.file.bodies:
             sampled = f"materials.{body.material}.density"
             if f"{EXTENSION}bodies.{body.name}.density" in one.members and sampled in variables:
                 expected = f"expected no variable that the cause states of {body.name} itself"
@@ -201,59 +213,48 @@ def _digest(measured):
 
 
 def _ensemble(ensemble, variables, path):
-    """Entry ``ensemble`` of the extended study, and the target correlation, None where there is none."""
+    """Entry ``ensemble`` of the extended study, and the target correlation of its file, None where there is none."""
     linked, leaders = dict(ensemble.linked), {}
     for name, values in variables.items():
         same = next((one for one in leaders if np.array_equal(leaders[one], values)), None)
-        if same is None:
-            leaders[name] = values
-        else:
-            linked[name] = same
+        (leaders if same is None else linked)[name] = values if same is None else same
     given = {name: one.model_dump(mode="json") for name, one in ensemble.distributions.items()}
-    given |= {
-        name: {"distribution": "tabulated", "values": _quantiles(values)} for name, values in leaders.items()
-    }
-    target = complete_correlation(ensemble.correlation, list(given))
-    own = slice(len(ensemble.distributions), None)
-    among = np.atleast_2d(np.corrcoef(list(leaders.values())))
-    among = np.where(np.abs(among) > _TOLD, among, 0.0)
-    np.fill_diagonal(among, 1.0)
-    target[own, own] = np.round(nearest_correlation(among), 4)
+    for name, values in leaders.items():
+        rising = np.quantile(values, _STEPS) + _RISE * np.ptp(values) * _STEPS
+        given[name] = {"distribution": "tabulated", "values": list(map(_rounded, rising))}
     asked = {"size": ensemble.size, "seed": ensemble.seed, "distributions": given, "linked": linked}
+    target, own = (
+        complete_correlation(ensemble.correlation, list(given)),
+        slice(len(ensemble.distributions), None),
+    )
+    among = np.atleast_2d(np.corrcoef(list(leaders.values())))
+    target[own, own] = np.round(nearest_correlation(np.where(np.abs(among) > _TOLD, among, 0.0)), 4)
     named = np.flatnonzero((target != np.eye(len(given))).any(axis=0))
     if not len(named):
         return asked, None
-    frame = pd.DataFrame(target, given, given).iloc[named, named]
-    return {**asked, "correlation": str(path)}, frame
-
-
-def _quantiles(values):
-    """Quantiles at even steps of the probability from 0 to 1, rising."""
-    steps = np.linspace(0.0, 1.0, _STEPS + 1)
-    return [_rounded(value) for value in np.quantile(values, steps) + _RISE * np.ptp(values) * steps]
+    return asked | {"correlation": str(path)}, pd.DataFrame(target, given, given).iloc[named, named]
 
 
 def _rounded(value):
     return float(f"{value:.{_DIGITS}g}")
 
 
-def _header(verdict, found, causes, run=""):
+def _header(verdict, found, causes):
     """Comment lines that say where a file comes from."""
     lines = [
         f"Written by `blockshake extend-study` {blockshake.__version__} from {Path(verdict).name}, digest "
         f"{file_digest(verdict)}, version {found.version}.",
-        f"Word of the verdict: {found.word}{f' ({found.decision})' if found.causes else ''}.",
+        f"Word of the verdict: {found.word} ({found.decision}).",
     ]
     for cause in causes:
-        sizes = [
+        sizes = (
             f"{name} {one.estimate:.3g} [{one.lower:.3g}, {one.upper:.3g}] {one.unit}"
             for name, one in cause.parameters.items()
-        ]
+        )
         where = f", {' or '.join(cause.places)}" if cause.place else ""
         lines.append(
             f"Cause: {cause.title} ({cause.name}{where}); estimate and 90 % interval: {', '.join(sizes)}."
         )
-    lines += [f"Run: {run}"] if run else []
     return "".join(f"# {line}\n" for line in lines)
 
 
@@ -265,6 +266,7 @@ def _text(mapping):
 def _write(texts, output):
     """Write all files; where the study is then not right, those that were there before stay."""
     before = {path: path.read_bytes() if path.exists() else None for path in texts}
+    there = output.parent.exists()
     try:
         for path, text in texts.items():
             write_text(path, text)
@@ -272,4 +274,6 @@ def _write(texts, output):
     except InputError:
         for path, content in before.items():
             path.unlink(missing_ok=True) if content is None else path.write_bytes(content)
+        if not there:
+            output.parent.rmdir()
         raise

@@ -15,12 +15,14 @@ from blockshake.study.ensembles.ensemble import describe
 from blockshake.study.ensembles.envelope import counted_samples
 
 HIGH = 0.95  # quantile that stands for a large response
-QUANTITIES = ("median_drift", "drift", "uplift", "slip", "collapse", "safe_scale")
+QUANTITIES = ("median_drift", "drift", "uplift", "collapse", "safe_scale")
+SIDES = ("without", "extended", "change")
 _BEYOND = 0.95  # share of the members' own scores that a score must exceed for anything to be gained
 _DESCRIBED = {
-    "without": ("of the samples without the cause", "unit of the quantity"),
-    "extended": ("of the same samples with the cause", "unit of the quantity"),
-    "change": ("with the cause less without it", "unit of the quantity"),
+    "value": (
+        "of the samples without and with the cause, and the latter less the former",
+        "unit of the quantity",
+    ),
     "score": ("continuous ranked probability score against the measured curves", "m"),
     "gain": ("share of the error without the cause that the cause removes", "1"),
 }
@@ -51,9 +53,10 @@ def changes(ensembles, measured):
     Returns
     -------
     xarray.Dataset
-        ``without``, ``extended`` and ``change(model, quantity)``: ``median_drift`` and ``drift``, median and 95 %
-        quantile of the largest displacement along x of any block's markers from the slab [m]; ``uplift`` and ``slip``,
-        95 % quantiles of the largest of any joint [m]; ``collapse``, share of the samples that fall [1];
+        ``value(model, quantity, side)``, ``without`` and ``extended`` by the cause, and the ``change``:
+        ``median_drift`` and ``drift``, median and 95 % quantile of the largest displacement along x of any block's
+        markers from the slab [m]; ``uplift``, 95 % quantile of the largest of any joint [m]; ``collapse``, share of
+        the samples that fall [1];
         ``safe_scale``, of `with_fragility` [1]. ``score(model, kind)`` [m] and ``gain(model)``, 1 where nothing is left
         to gain, NaN where the samples without the cause fit within chance. Limits of 95 % of each: ``NAME_interval``.
         ``paired(model)``: samples that both have a result of.
@@ -84,49 +87,40 @@ def changes(ensembles, measured):
 
 def with_fragility(result, climber, *fragilities):
     """`changes` with the safe scales of both `fragility`, without and with the cause, by the model that climbed."""
-    safe = [
-        (float(one["safe_scale"]), *one["safe_scale_interval"].sel(bound=["lower", "upper"]).to_numpy())
-        for one in fragilities
-    ]
-    _put(result, {"quantity": "safe_scale", "model": climber}, *safe, _difference(*safe))
+    safe = [(float(one["safe_scale"]), *one["safe_scale_interval"].to_numpy()) for one in fragilities]
+    at, rows = {"quantity": "safe_scale", "model": climber}, np.array([*safe, _difference(*safe)])
+    result["value"].loc[at], result["value_interval"].loc[at] = rows[:, 0], rows[:, 1:]
     return result
 
 
 def _quantities(both, weights):
     """Quantities of both ensembles and their change, NaN without samples; the safe scale apart."""
-    names = ("without", "extended", "change")
-    empty = {name: ("quantity", np.full(len(QUANTITIES), np.nan)) for name in names}
-    empty |= {
-        f"{name}_interval": (("bound", "quantity"), np.full((2, len(QUANTITIES)), np.nan)) for name in names
-    }
-    result = xr.Dataset(empty, {"quantity": list(QUANTITIES), "bound": ["lower", "upper"]})
-    if weights is None:
-        return result
-    drift, uplift, slip = zip(*map(_largest, both), strict=True)
-    for name, values, share in (
-        ("median_drift", drift, 0.5), ("drift", drift, HIGH), ("uplift", uplift, HIGH), ("slip", slip, HIGH),
-    ):  # fmt: skip
-        drawn = [_drawn_quantiles(one, weights, share) for one in values]
-        drawn.append(drawn[1] - drawn[0])
-        _put(result, {"quantity": name}, *((one[0], *limits_of(one[1:])) for one in drawn))
-    fell = [np.isin(one["status"].values, FALLEN) for one in both]
-    alone = [_share(fell[0] & ~fell[1]), _share(fell[1] & ~fell[0])]
-    _put(result, {"quantity": "collapse"}, *map(_share, fell), _difference(*alone))
-    return result
+    rows = np.full((len(QUANTITIES), len(SIDES), 3), np.nan)
+    if weights is not None:
+        drift, uplift = zip(*map(_largest, both), strict=True)
+        for row, (values, share) in enumerate([(drift, 0.5), (drift, HIGH), (uplift, HIGH)]):
+            drawn = [_drawn_quantiles(one, weights, share) for one in values]
+            rows[row] = [(one[0], *limits_of(one[1:])) for one in (*drawn, drawn[1] - drawn[0])]
+        fell = [np.isin(one["status"].values, FALLEN) for one in both]
+        alone = [_share(fell[0] & ~fell[1]), _share(fell[1] & ~fell[0])]
+        rows[3] = [*map(_share, fell), _difference(*alone)]
+    dims = ("quantity", "side")
+    return xr.Dataset(
+        {"value": (dims, rows[..., 0]), "value_interval": ((*dims, "bound"), rows[..., 1:])},
+        {"quantity": list(QUANTITIES), "side": list(SIDES), "bound": ["lower", "upper"]},
+    )
 
 
 def _largest(ensemble):
-    """Largest drift of any block's marker from the slab, uplift and slip of any joint, by sample [m]."""
-    drift = ensemble["peak"].sel(frame="slab").max("marker").to_numpy()
-    return drift, *(ensemble[name].max("joint").to_numpy() for name in ("joint_uplift", "joint_slip"))
+    """Largest drift of any block's marker from the slab, and uplift of any joint, by sample [m]."""
+    drift = ensemble["peak"].sel(frame="slab").max("marker")
+    return drift.to_numpy(), ensemble["joint_uplift"].max("joint").to_numpy()
 
 
 def _drawn_quantiles(values, weights, share):
     """Quantile of values drawn as often as each row of the weights says, (n_draws,)."""
-    places = np.arange(len(values))
-    return np.array(
-        [sample_quantiles(values[np.repeat(places, row.astype(int))], (share,))[0] for row in weights]
-    )
+    drawn = (np.repeat(values, row.astype(int)) for row in weights)
+    return np.array([sample_quantiles(one, (share,))[0] for one in drawn])
 
 
 def _share(chosen):
@@ -138,11 +132,6 @@ def _difference(first, second):
     value = second[0] - first[0]
     below = np.hypot(second[0] - second[1], first[2] - first[0])
     return value, value - below, value + np.hypot(second[2] - second[0], first[0] - first[1])
-
-
-def _put(result, at, without, extended, change):
-    for name, (value, *limits) in (("without", without), ("extended", extended), ("change", change)):
-        result[name].loc[at], result[f"{name}_interval"].loc[at] = value, limits
 
 
 def _gain(both, measured, weights):
