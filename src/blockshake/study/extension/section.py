@@ -33,18 +33,23 @@ def extension(content):
             "that fell are lower limits."
         ),
         Items(tuple(words for name in pairs for words in sentences(content, name))),
-        Table(
-            "Change: with the cause less without it. Limits of 95 % in brackets, by drawing the pairs of samples "
-            "again; those of shares are Clopper and Pearson's, those of safe factors likelihood's. Limits of a "
-            f"{quantile_percent(HIGH)} quantile hold less often than stated where fewer than {samples_needed(HIGH)} "
-            "pairs bear them.",
-            ("Case", "Model", "Quantity", "Without the cause", "With the cause", "Change"),
-            tuple(row for name in pairs for row in _rows(content.changes[name], name)), "lllrrr",
-        ),
+        _table(content, pairs),
         *(_figure(content.cases[name], content.cases[nominal]) for name, nominal in pairs.items()),
         *_transfer(content),
-    ]  # fmt: skip
+    ]
     return Section("Effect of the cause", "extension", tuple(blocks))
+
+
+def _table(content, pairs):
+    caption = (
+        "Change: with the cause less without it. Limits of 95 % in brackets, by drawing the pairs of samples "
+        "again; those of shares are Clopper and Pearson's, those of safe factors likelihood's. Limits of a "
+        f"{quantile_percent(HIGH)} quantile hold less often than stated where fewer than {samples_needed(HIGH)} "
+        "pairs bear them."
+    )
+    header = ("Case", "Model", "Quantity", "Without the cause", "With the cause", "Change")
+    rows = tuple(row for name in pairs for row in _rows(content.changes[name], name))
+    return Table(caption, header, rows, "lllrrr")
 
 
 def _known(result):
@@ -116,12 +121,11 @@ def _transfer(content):
         case, named = content.cases[name], name in content.study["extension"]["named_by"]
         for model in result["model"].values if case.measured is not None else ():
             at = result.sel(model=model)
-            gain = _limited(at, "gain", lambda share: number(share, 2))
-            rows.append((
-                name, f"{case.settings['measured']['test']}, {case.curve_word}", "yes" if named else "no",
-                model_label(model), *(millimetres(score) for score in at["score"].values),
-                gain if np.isfinite(at["gain"]) else MISSING,
-            ))  # fmt: skip
+            known = np.isfinite(at["gain"])
+            gain = _limited(at, "gain", lambda share: number(share, 2)) if known else MISSING
+            test = f"{case.settings['measured']['test']}, {case.curve_word}"
+            scores = map(millimetres, at["score"].values)
+            rows.append((name, test, "yes" if named else "no", model_label(model), *scores, gain))
     caption = (
         "Whether naming the cause predicts measured tests. Score: continuous ranked probability score of the samples "
         "against the measured curves, relative to the slab, mean over blocks and times; smaller is better. Gain: share "
