@@ -118,6 +118,21 @@ def files_of_models(wildcards):
     return named
 
 
+def files_of_pair(wildcards):
+    """Samples of a case with a cause and of the same case without it, by every model; their fragility, where there is any."""
+    pair = config["extension"]["cases"][wildcards.case], wildcards.case
+    named = {
+        f"{model} {word}": batch_files(wildcards, model, case)
+        for model in MODELS
+        for word, case in zip(("without", "with"), pair)
+    }
+    if set(pair) <= set((config["fragility"] or {"cases": ()})["cases"]):
+        named["fragility"] = expand(
+            "results/{study}/fragility/{case}.nc", study=wildcards.study, case=pair
+        )
+    return named
+
+
 def files_of_report(only=None):
     """Files that the report of the study, or of one of its cases, is made of, by name."""
     cases = [only] if only else list(CASES)

@@ -1,21 +1,3 @@
-EXTENDED = (config.get("extension") or {"cases": {}})["cases"]
-
-
-def files_of_pair(wildcards):
-    """Samples of a case with a cause and of the same case without it, by every model; their fragility, where there is any."""
-    pair = EXTENDED[wildcards.case], wildcards.case
-    named = {
-        f"{model} {word}": batch_files(wildcards, model, case)
-        for model in MODELS
-        for word, case in zip(("without", "with"), pair)
-    }
-    if set(pair) <= set(FRAGILITY.get("cases", ())):
-        named["fragility"] = expand(
-            "results/{study}/fragility/{case}.nc", study=wildcards.study, case=pair
-        )
-    return named
-
-
 rule measure_changes:
     """What a cause changes in the responses of a case, and its gain where the case has a measured test."""
     input:
