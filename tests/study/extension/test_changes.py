@@ -92,12 +92,19 @@ def test_too_few_pairs_have_no_gain(make_run, gather, read_with_noise):
 
 
 def test_safe_scales_stand_beside_each_other(pair):
-    def fragility(value, low, high):
+    def fragility(value, low, high, dispersion=0.2):
         limits = xr.DataArray([low, high], dims="bound", coords={"bound": ["lower", "upper"]})
-        return xr.Dataset({"safe_scale": value, "safe_scale_interval": limits})
+        ends = {"capacity_lower": ("sample", [1.5, 2.0]), "capacity_upper": ("sample", [2.5, 3.0])}
+        return xr.Dataset(
+            {"safe_scale": value, "safe_scale_interval": limits, "dispersion": dispersion, **ends}
+        )
 
     found = changes({"ls-dem": pair()}, None)
     of = with_fragility(found, "ls-dem", fragility(2.0, 1.8, 2.3), fragility(1.5, 1.1, 1.7))
     at = of.sel(model="ls-dem", quantity="safe_scale", side="change")
     assert float(at["value"]) == -0.5
     assert_allclose(at["value_interval"], [-0.5 - np.hypot(0.4, 0.3), -0.5 + np.hypot(0.2, 0.2)])
+    # all capacities between two levels: these are the limits
+    alike = with_fragility(found, "ls-dem", fragility(2.2, np.nan, np.nan, 0.0), fragility(1.5, 1.1, 1.7))
+    without = alike.sel(model="ls-dem", quantity="safe_scale", side="without")
+    assert_allclose(without["value_interval"], [2.0, 2.5])

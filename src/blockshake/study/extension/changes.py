@@ -87,10 +87,18 @@ def changes(ensembles, measured):
 
 def with_fragility(result, climber, *fragilities):
     """`changes` with the safe scales of both `fragility`, without and with the cause, by the model that climbed."""
-    safe = [(float(one["safe_scale"]), *one["safe_scale_interval"].to_numpy()) for one in fragilities]
+    safe = [_safe(one) for one in fragilities]
     at, rows = {"quantity": "safe_scale", "model": climber}, np.array([*safe, _difference(*safe)])
     result["value"].loc[at], result["value_interval"].loc[at] = rows[:, 0], rows[:, 1:]
     return result
+
+
+def _safe(fragility):
+    """Safe scale with its limits, the two levels where all capacities lie between them."""
+    limits = fragility["safe_scale_interval"].to_numpy()
+    if float(fragility["dispersion"]) == 0.0:
+        limits = float(fragility["capacity_lower"].max()), float(fragility["capacity_upper"].min())
+    return float(fragility["safe_scale"]), *limits
 
 
 def _quantities(both, weights):
