@@ -242,3 +242,16 @@ def test_an_extended_study_is_not_extended_again_and_a_bad_one_leaves_the_one_be
 def test_other_parts_of_the_verdict_are_named_as_left_out(written):
     paths = written(PITCH, CAUSES["weak-joint"], decision="combination", causes=("table-pitch", "weak-joint"))
     assert extend_study(*paths)[0] == "table-pitch is left out: no structure file can state it"
+
+
+def test_structures_of_other_shapes_have_variables_of_their_own(written):
+    cases = [{**STUDY["cases"][0], "structure": f"configuration-{number}"} for number in (1, 3)]
+    paths = written(CAUSES["reduced-bearing"], study={**STUDY, "cases": cases})
+    extend_study(*paths)
+    config = load_config(paths[2])
+    names = ["extension.shapes.block.chamfer", "extension.shapes.top.chamfer"]
+    assert config.ensemble.linked[names[1]] == names[0]
+    row = row_of({names[0]: 0.06})
+    for case, reached in ((config.cases[1], names[:1]), (config.cases[3], names)):
+        given = sample_parameters(row, load_structure(case.structure), config.ensemble.linked)
+        assert given == dict.fromkeys(reached, 0.06)

@@ -1,6 +1,7 @@
 """Parameters of one structure that a sample of the design stands for."""
 
 from blockshake.geometry.schema import EXTENSION
+from blockshake.geometry.structure_file import dotted_values
 from blockshake.simulation.models import model_of
 
 
@@ -20,7 +21,8 @@ def has_parameter(structure, name):
     """Whether a structure has the material, the pair or the box that a parameter describes, by its dotted name."""
     file, (kind, *parts) = structure.file, name.split(".")
     if name.startswith(EXTENSION):
-        return bool(file.extension)
+        stated = dotted_values(file.model_dump(mode="json")) if file.extension else {}
+        return name.removeprefix(EXTENSION) in stated
     if kind == "materials":
         return parts[0] in file.materials
     if kind == "friction":
