@@ -185,6 +185,10 @@ def _parser():
         "--costs", metavar="COSTS.yaml", help="of one measurement more, over that of a shake"
     )
     command.add_argument("--output", required=True, metavar="DIR", help="of plan.json and plan.html")
+    command = add("extend-study", _extend_study, "a study in which the cause of a verdict is a variable")
+    command.add_argument("verdict", metavar="VERDICT.json", help="of `blockshake diagnose`")
+    command.add_argument("study", metavar="STUDY.yaml", help="an ordinary study of what was tested")
+    command.add_argument("--output", required=True, metavar="EXTENDED.yaml")
 
     command = add("check", _check, "say what is wrong with structure, motion or study files")
     command.add_argument("files", nargs="+", metavar="FILE")
@@ -387,6 +391,14 @@ def _plan_campaign(options):
     print()
     _print_table(addition_rows(additions))
     print(f"{options.output}/plan.html")
+    return 0
+
+
+def _extend_study(options):
+    from blockshake.diagnosis.gain.extended_study import extend_study
+
+    print("\n".join(extend_study(options.verdict, options.study, options.output)))
+    return 0
 
 
 def _check(options):

@@ -1,5 +1,6 @@
 """Every parameter by its dotted name: unit, meaning and source."""
 
+import re
 from typing import NamedTuple
 
 
@@ -51,7 +52,23 @@ PHYSICAL = (
     Quantity("shapes.SHAPE.hollow", "m", "depth of the middle of each face below its rim", "docs/theory/rocking.md"),
     Quantity("stoppers.INDEX.gap", "m", "clearance of a stopper, counted from 0", "structure file"),
     Quantity("stoppers.INDEX.stiffness", "N/m", "stiffness of a stopper", "structure file"),
+    Quantity("external_forces.INDEX.amplitude", "N", "force from outside, counted from 0", "structure file"),
+    Quantity("external_forces.INDEX.stiffness", "N/m", "of a rope or spring from outside", "structure file"),
+    Quantity("external_forces.INDEX.damping", "N s/m", "of a viscous drag from outside", "structure file"),
+    Quantity("external_forces.INDEX.drag", "N", "of a dry drag from outside", "structure file"),
 )  # fmt: skip
+_OF_VECTOR = r"(\.[xyz])?$"
+
+
+def unit_of(name):
+    """SI unit of a parameter of a structure by its dotted name, a part of a vector by its axis; None of no such one."""
+    for quantity in PHYSICAL:
+        pattern = re.sub("[A-Z]+", r"[^\\s./]+", quantity.name.replace(".", r"\."))
+        if re.match(pattern + _OF_VECTOR, name):
+            return quantity.unit
+    return None
+
+
 _DENSITIES = (100.0, 25000.0)
 # Ends between which values of dry-stacked blocks lie, in a vector those of its parts: wide, and by judgement.
 # `blockshake check` remarks values beyond.

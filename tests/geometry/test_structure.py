@@ -8,6 +8,7 @@ import yaml
 
 from blockshake.errors import InputError
 from blockshake.geometry.structure import build_structure, load_structure
+from blockshake.geometry.structure_file import dotted_values, replace_into
 
 # kg; a box less its chamfers, by inclusion and exclusion: L W H - 2 c^2 (L + W + H) + 6 c^3
 BLOCK_MASS = 2400.0 * (0.8 * 2.4 * 1.6 - 2.0 * 0.02**2 * (0.8 + 2.4 + 1.6) + 6.0 * 0.02**3)
@@ -359,3 +360,25 @@ def test_a_loaded_structure_with_parameters_is_the_one_loaded_with_them(monkeypa
     assert changed.solids["slab"] is plain.solids["slab"]
     with pytest.raises(InputError, match=r"configuration-2: friction\.wood\.wood: expected"):
         plain.with_parameters({"friction.wood.wood": 0.5})
+
+
+def test_every_value_is_set_by_the_dotted_name_that_it_is_listed_by():
+    structure = load_structure("configuration-3", {"joints.wall-a-1.wall-a-2.compliance": 1e-10})
+    mapping = structure.file.model_dump(mode="json")
+    values = dotted_values(mapping)
+    assert values["bodies.wall-a-1.mass_offset.x"] == 0.0
+    assert values["joints.wall-a-1.wall-a-2.compliance"] == 1e-10
+    numbers = [name for name, value in values.items() if isinstance(value, float)]
+    for name in numbers:
+        replace_into(mapping, name, 7.0, "")
+    assert {dotted_values(mapping)[name] for name in numbers} == {7.0}
+    assert {name: value for name, value in dotted_values(mapping).items() if name not in numbers} == {
+        name: value for name, value in values.items() if name not in numbers
+    }
+
+
+def test_content_is_that_of_the_blocks_whatever_they_are_called():
+    structure = load_structure("configuration-1")
+    named = structure.with_parameters({"name": "other", "description": "others"})
+    assert named.content == structure.content
+    assert structure.with_parameters({"shapes.block.chamfer": 0.021}).content != structure.content

@@ -16,8 +16,10 @@ from blockshake.simulation.models import MODELS, solver_of
 from blockshake.simulation.parameter_table import instances
 from blockshake.statistics.scores import FEWEST
 from blockshake.study.config import check_config, load_config
+from blockshake.study.config_checks import typical_structure
 from blockshake.study.remarks import motion_remarks, structure_remarks, unusual_values
 from blockshake.study.sampling.distributions import TABLE_2
+from blockshake.study.sampling.sample_parameters import has_parameter
 
 ROOT = PACKAGE.parents[1]
 
@@ -468,3 +470,79 @@ def test_a_variable_beyond_what_is_usual_is_remarked(mapping, cube, tmp_path):
     study["ensemble"]["distributions"]["friction.stone.stone"] = {"mean": 60.0, "cov": 0.1}
     (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
     assert "friction.stone.stone is 59.7022: 0.05 to 1.5 is usual" in check_file(tmp_path / "study.yaml")
+
+
+def _extended(tmp_path):
+    """A study of one case without and with a cause, which a structure file states."""
+    structure = load_yaml(ROOT / "config" / "structures" / "configuration-2.yaml")
+    structure["extension"] = "worn edges"
+    (tmp_path / "worn.yaml").write_text(yaml.safe_dump(structure))
+    study = copy.deepcopy(NEEDED)
+    study["cases"].append({**study["cases"][0], "name": "worn", "structure": str(tmp_path / "worn.yaml")})
+    study["ensemble"]["distributions"] = {
+        "friction.concrete.concrete": {"distribution": "lognormal", "mean": 0.75, "cov": 0.1},
+        "extension.shapes.block.chamfer": {"distribution": "tabulated", "values": [0.03, 0.05]},
+    }
+    study["extension"] = {"cases": {"worn": "configuration-2"}}
+    return study
+
+
+def test_a_cause_is_a_variable_of_the_structures_that_state_it(tmp_path):
+    config = check_config(_extended(tmp_path), "mine.yaml")
+    worn, plain = (load_structure(case.structure) for case in config.cases[::-1])
+    assert has_parameter(worn, "extension.shapes.block.chamfer")
+    assert not has_parameter(plain, "extension.shapes.block.chamfer")
+    typical = typical_structure(worn, config.ensemble)
+    assert typical.file.shapes["block"].chamfer == pytest.approx(0.04)
+    assert config.nominal(config.case("worn")).name == "configuration-2"
+    assert config.nominal(config.cases[0]) is config.cases[0]
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "line"),
+    [
+        (
+            ("extension", "cases"),
+            {"torn": "configuration-2"},
+            "extension.cases: expected one of configuration-2, worn",
+        ),
+        (
+            ("extension", "cases"),
+            {"worn": "torn"},
+            "extension.cases.worn: expected one of configuration-2, worn",
+        ),
+        (
+            ("extension", "cases"),
+            {"configuration-2": "worn"},
+            "extension.cases.configuration-2: expected a structure that states an `extension`, and one that does not",
+        ),
+        (
+            ("extension", "named_by"),
+            ["configuration-2"],
+            "extension.named_by: expected one of worn, not configuration-2",
+        ),
+        (
+            ("cases", 1, "scale"),
+            2.0,
+            "extension.cases.worn: expected the motion, window, samples and test of configur",
+        ),
+        (
+            ("ensemble", "distributions", "extension.shapes.block.chamfer", "values"),
+            [0.5, 0.9],
+            "ensemble.distributions.extension.shapes.block.chamfer: ",
+        ),
+        (
+            ("ensemble", "distributions", "extension.stoppers.0.gap"),
+            {"distribution": "tabulated", "values": [0.01, 0.02]},
+            "ensemble.distributions.extension.stoppers.0.gap: ",
+        ),
+    ],
+)
+def test_a_wrong_extension_is_named(tmp_path, path, value, line):
+    place = study = _extended(tmp_path)
+    for key in path[:-1]:
+        place = place[key]
+    place[path[-1]] = value
+    with pytest.raises(InputError) as error:
+        check_config(study, "mine.yaml")
+    assert f"mine.yaml: {line}" in str(error.value)

@@ -3,6 +3,7 @@
 import html
 import os
 import re
+import shutil
 import signal
 import subprocess
 import time
@@ -10,8 +11,11 @@ import time
 import pytest
 import yaml
 from checkout import LIMIT, SNAKEMAKE, Checkout
+from made_up_decision import made_up_cause
 
-from blockshake.files import PACKAGE
+from blockshake.cli import main
+from blockshake.diagnosis.verdict.verdict import Misfit, Verdict, write_verdict
+from blockshake.files import PACKAGE, load_yaml
 from blockshake.log import read_cost
 from blockshake.working_folder import hold
 
@@ -209,3 +213,32 @@ def test_workflow_is_free_of_lint():
         cwd=ROOT, capture_output=True, text=True, timeout=LIMIT, check=False,
     )  # fmt: skip
     assert answer.returncode == 0, answer.stdout + answer.stderr
+
+
+def test_an_extended_study_is_run_with_nothing_special(tmp_path, monkeypatch, capsys):
+    """A made verdict, a tiny study, the command, and the ordinary workflow."""
+    checkout = Checkout(tmp_path)
+    shutil.copy(ROOT / "config" / "structures" / "configuration-1.yaml", tmp_path / "wall.yaml")
+    config = {key: checkout.config[key] for key in ("name", "description", "ensemble")}
+    config["models"] = {"nscd-rigid": checkout.config["models"]["nscd-rigid"]}
+    config["cases"] = [{"structure": "wall.yaml", "motion": "basso-tirreno", "scale": 2.0, "duration": 0.05}]
+    checkout.write_config(config)
+    inset = {"estimate": 0.04, "lower": 0.03, "upper": 0.05, "unit": "m"}
+    sizes = tuple({"inset": 0.03 + 0.0005 * number} for number in range(40))
+    cause = made_up_cause("reduced-bearing", {}, parameters={"inset": inset}, members=sizes)
+    verdict = Verdict(
+        decision="named", causes=["reduced-bearing"], probabilities={}, misfit=Misfit(p=0.01, where="block-1"), runs=0,
+        word="established", extension=(cause,),
+    )  # fmt: skip
+    write_verdict(tmp_path / "verdict.json", verdict)
+    monkeypatch.chdir(tmp_path)
+    command = ["extend-study", "verdict.json", "config/small.yaml", "--output", "made/extended.yaml"]
+    assert main(command) == 0
+    assert "extension.shapes.block.chamfer [m]" in capsys.readouterr().out
+    checkout.write_config(load_yaml("made/extended.yaml"))
+    answer = checkout.snakemake()
+    assert answer.returncode == 0, answer.stdout + answer.stderr
+    page = (tmp_path / "reports" / "small-extended.html").read_text()
+    assert "Effect of the cause" in page
+    assert "wall-extended, NSCD rigid, 10 pairs of samples: reduced bearing width changes" in page
+    assert checkout.jobs() == {}

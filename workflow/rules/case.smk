@@ -92,15 +92,15 @@ def batch_ids(count):
     ]
 
 
-def batch_files(wildcards, model=None):
+def batch_files(wildcards, model=None, case=None):
     """Batch files of a case by a model, of the wildcards if none is named."""
-    model = model or wildcards.model
+    model, case = model or wildcards.model, case or wildcards.case
     return expand(
         "results/{study}/runs/{model}/{case}/{batch}.nc",
         study=wildcards.study,
         model=model,
-        case=wildcards.case,
-        batch=batch_ids(CHECKED.samples(model, wildcards.case)),
+        case=case,
+        batch=batch_ids(CHECKED.samples(model, case)),
     )
 
 
@@ -115,6 +115,21 @@ def files_of_models(wildcards):
         for model in MODELS
         if CHECKED.has_twins(model, wildcards.case)
     }
+    return named
+
+
+def files_of_pair(wildcards):
+    """Samples of a case with a cause and of the same case without it, by every model; their fragility, where there is any."""
+    pair = config["extension"]["cases"][wildcards.case], wildcards.case
+    named = {
+        f"{model} {word}": batch_files(wildcards, model, case)
+        for model in MODELS
+        for word, case in zip(("without", "with"), pair)
+    }
+    if set(pair) <= set((config["fragility"] or {"cases": ()})["cases"]):
+        named["fragility"] = expand(
+            "results/{study}/fragility/{case}.nc", study=wildcards.study, case=pair
+        )
     return named
 
 

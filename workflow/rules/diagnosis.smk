@@ -179,6 +179,7 @@ rule conclude:
         parity="results/diagnosis/{campaign}/parity.json",
         decision="results/diagnosis/{campaign}/decision.json",
         gain=gain_files,
+        tests=lambda wildcards: test_files(wildcards.campaign, "open"),
     output:
         "results/diagnosis/{campaign}/verdict.json",
     log:

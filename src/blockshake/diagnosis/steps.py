@@ -168,6 +168,8 @@ def conclude(folder, runs, files):
     from blockshake.diagnosis.answer.decision import load_decision
     from blockshake.diagnosis.verdict.conclusion import conclude
     from blockshake.diagnosis.verdict.verdict import load_gain
+    from blockshake.files import file_digest
+    from blockshake.geometry.structure import load_structure
     from blockshake.measurement.campaigns.campaign import load_campaign
     from blockshake.parity.parity import load_parity
 
@@ -178,7 +180,12 @@ def conclude(folder, runs, files):
         for test, fall in parity.falls.items()
     ]
     caveats += [f"{test}: {line}" for test, lines in parity.gaps.items() for line in lines]
-    if (decision.parts or parity.findings) and not (files.gain or load_campaign(folder).sealed):
+    campaign = load_campaign(folder)
+    judged = {
+        "structure": load_structure(campaign.structure).content,
+        "tests": {name: file_digest(campaign.folder / campaign.tests[name].file) for name in decision.tests},
+    }
+    if (decision.parts or parity.findings) and not (files.gain or campaign.sealed):
         caveats.append("no gain was measured: there is no sealed test")
-    verdict = conclude(decision, parity.findings, parity.recorder_sensors, caveats, measured)
+    verdict = conclude(decision, parity.findings, parity.recorder_sensors, caveats, measured, judged)
     return verdict.model_copy(update={"runs": runs + verdict.runs})

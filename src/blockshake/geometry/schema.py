@@ -113,6 +113,7 @@ class Stopper(Strict):
     )
 
 
+EXTENSION = "extension."  # before the dotted name of a parameter of structures that state an extension
 CREEP = 0.01  # m/s, below which a dry drag falls off
 
 
@@ -192,6 +193,12 @@ class StructureFile(Strict):
 
     name: str = Field(description="of the structure, for reports")
     description: str = Field("", description="a sentence for reports")
+    extension: str = Field(
+        "",
+        description="the cause that this structure has beside a nominal one, in words; a study's variables "
+        "`extension.NAME`, NAME a parameter, are of such structures alone",
+        exclude_if=lambda given: not given,  # a structure without any keeps its digest
+    )
     gravity: Accelerations = Field((0.0, 0.0, -9.81), description="acceleration of a free body [m/s2]")
     materials: dict[Name, Material]
     shapes: dict[Name, Shape]

@@ -8,7 +8,7 @@ import numpy as np
 import trimesh
 
 from blockshake.errors import InputError
-from blockshake.files import load_yaml, named_file
+from blockshake.files import content_digest, load_yaml, named_file
 from blockshake.geometry.mass_offset import check_offset, offset_inertia, offset_solid
 from blockshake.geometry.meshes.mesh_file import read_mesh
 from blockshake.geometry.overlap import depths_of_pairs, near_pairs
@@ -139,17 +139,12 @@ class Structure:
         known = {name: (shape, self.solids[name]) for name, shape in self.file.shapes.items()}
         return build_structure(mapping, self.source, self.folder, known)
 
-    def same_as(self, other):
-        """Whether another structure has the same content, whatever both and their files are called."""
-        mine, others = (
-            structure.file.model_dump(
-                exclude={"name": True, "description": True, "shapes": {"__all__": {"mesh"}}}
-            )
-            for structure in (self, other)
-        )
-        return mine == others and all(
-            np.array_equal(solid.vertices, other.solids[name].vertices) for name, solid in self.solids.items()
-        )
+    @property
+    def content(self):
+        """Digest of the content: equal for equal structures, whatever they and their files are called."""
+        without = {"name": True, "description": True, "shapes": {"__all__": {"mesh"}}}
+        solids = (self.solids[name].vertices.tobytes() for name in sorted(self.solids))
+        return content_digest(self.file.model_dump(mode="json", exclude=without), *solids)
 
     def solid(self, body):
         """Solid of the body with this index, about its mass centre."""

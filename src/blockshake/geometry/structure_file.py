@@ -7,7 +7,7 @@ import numpy as np
 
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.geometry.schema import AXES
+from blockshake.geometry.schema import AXES, EXTENSION
 
 _SHORTEST_WIRE = 1e-3  # m; a shorter one has no direction
 _BEHIND = 0.02  # m, by which a face may lie behind the point given of the rod, as blocks out of place make it
@@ -19,12 +19,14 @@ _REMARKED, _REFUSED = 0.5, 3.0  # of the body's longest edge
 def replace_into(mapping, key, value, source):
     """Set one dotted key of a structure's mapping in place; pairs of materials or bodies in either order.
 
+    Part of a vector goes by its axis, as in ``bodies.NAME.mass_offset.x``.
+
     Raises
     ------
     InputError
         The structure has no such parameter.
     """
-    parts = key.split(".")
+    parts = key.removeprefix(EXTENSION).split(".")
     if parts[0] == "friction":
         entry = _entry_of_pair(mapping, "friction", "pair", parts)
         if entry is None:
@@ -54,9 +56,36 @@ def replace_into(mapping, key, value, source):
             node = node.get(part)
         if not isinstance(node, (dict, list)):
             raise InputError(source, key, f"expected a parameter of this structure; it has no '{part}' here")
+    if _is_vector(node) and parts[-1] in AXES:
+        node[AXES.index(parts[-1])] = value
+        return
     if not isinstance(node, dict):
         raise InputError(source, key, "expected a parameter of this structure")
     node[parts[-1]] = value
+
+
+def _is_vector(node):
+    return isinstance(node, list) and len(node) == len(AXES) and all(isinstance(one, float) for one in node)
+
+
+def dotted_values(node, name=""):
+    """Every value of a structure's mapping by the dotted name by which `replace_into` sets it."""
+    if isinstance(node, dict):
+        named = node.items()
+    elif _is_vector(node):
+        named = zip(AXES, node, strict=True)
+    elif isinstance(node, list) and all(isinstance(item, dict) for item in node):
+        named = [(_called(index, item), item) for index, item in enumerate(node)]
+    else:
+        return {name: node}
+    parts = [dotted_values(value, f"{name}.{key}" if name else key) for key, value in named]
+    return {key: value for part in parts for key, value in part.items()}
+
+
+def _called(index, item):
+    """Name of an entry of a list: its own, those of its pair, or its number."""
+    pair = item.get("pair") or item.get("bodies")
+    return ".".join(pair) if pair else item.get("name", str(index))
 
 
 def _entry_of_pair(mapping, kind, named, parts):

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from blockshake.geometry.schema import AXES
 from blockshake.simulation.models import MODELS, NAME_IN_STUDY
 
 CUBED = "\N{SUPERSCRIPT THREE}"
@@ -35,6 +36,9 @@ def parameter_label(name):
     if name in _NAMES:
         return _NAMES[name]
     kind, *rest = name.split(".")
+    if kind == "extension":  # a part of a vector has its axis at the end
+        places, key = (rest[1:-2], " ".join(rest[-2:])) if rest[-1] in AXES else (rest[1:-1], rest[-1])
+        return f"cause: {key.replace('_', ' ')} of {' and '.join(places)}"
     if kind == "friction":
         return f"friction, {rest[0]} on {rest[1]}"
     return f"{_PROPERTIES.get(rest[1], rest[1])} of {rest[0]}"

@@ -9,6 +9,7 @@ from blockshake.simulation.models import solver_of
 from blockshake.store import load_made
 from blockshake.study.config_checks import (
     check_calibration,
+    check_extension,
     check_fragility,
 )
 from blockshake.study.sampling.latin_hypercube import load_design
@@ -98,5 +99,6 @@ ANALYSES = (
     Analysis(
         "fragility", "fragility/{case}.nc", load_made, _cases_of("fragility"), "fragility", check_fragility
     ),
+    Analysis("changes", "changes/{case}.nc", load_made, _cases_of("extension"), "extension", check_extension),
     Analysis("calibration", "calibration.json", load_json, None, "calibration", check_calibration),
 )

@@ -16,7 +16,13 @@ from blockshake.study.calibration.settings import CalibrationSettings
 from blockshake.study.config_checks import check_named
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED
 from blockshake.study.ensembles.rungs import Rungs
-from blockshake.study.sampling.distributions import LINKED, TABLE_2, Lognormal, known_as, load_distributions
+from blockshake.study.sampling.distributions import (
+    LINKED,
+    TABLE_2,
+    Distribution,
+    known_as,
+    load_distributions,
+)
 from blockshake.study.sampling.latin_hypercube import LARGEST_SIZE, SMALLEST_SIZE
 from blockshake.validation import Count, Positive, Strict, Whole, validated
 
@@ -42,7 +48,7 @@ class Ensemble(Strict):
         description="samples of the Latin hypercube; another size is another design: all samples change [1]",
     )
     seed: Count = Field(description="of the design [1]")
-    distributions: dict[str, Lognormal] = Field(
+    distributions: dict[str, Distribution] = Field(
         TABLE_2,
         description="random variables by dotted name, as `blockshake parameters` lists them; Table 2's by default",
     )
@@ -145,6 +151,20 @@ class FragilitySettings(Strict):
     )
 
 
+class ExtensionSettings(Strict):
+    """A cause that measured tests speak for, as `blockshake extend-study` writes it: its effect is told by pairs of
+    cases."""
+
+    cases: dict[str, str] = Field(
+        min_length=1,
+        description="by the name of a case whose structure states an `extension`, that of the same case without",
+    )
+    named_by: tuple[str, ...] = Field(
+        (),
+        description="those of the former whose measured test the cause was named by: no test of a prediction",
+    )
+
+
 class Diagnosis(Strict):
     """Which measured campaigns are diagnosed, and how thoroughly."""
 
@@ -188,6 +208,9 @@ class StudyConfig(Strict):
     calibration: CalibrationSettings | None = Field(
         None, description="none: friction, restitution and contact stiffness are taken as they are"
     )
+    extension: ExtensionSettings | None = Field(
+        None, description="none: no case has a cause more than another"
+    )
     diagnosis: Diagnosis = Field(Diagnosis(), description="none: no campaign is diagnosed")
 
     @model_validator(mode="after")
@@ -218,6 +241,11 @@ class StudyConfig(Strict):
     def case(self, name):
         """The case of this name."""
         return next(case for case in self.cases if case.name == name)
+
+    def nominal(self, case):
+        """The case without the cause that a `StudyCase` has, or the case itself."""
+        pairs = self.extension.cases if self.extension else {}
+        return next((one for one in self.cases if one.name == pairs.get(case.name)), case)
 
     def named_motions(self):
         """Key, name and baseline of every motion that is named, cases first; a ladder without motions has theirs."""

@@ -75,7 +75,8 @@ def check_named(config, where):
         if case.structure not in structures:
             structures[case.structure] = check_structure(case.structure, where, key)
         if case.measured is not None:
-            check_measured(case, structures[case.structure], where, f"{key}.measured")
+            tested = check_structure(config.nominal(case).structure, where, key)
+            check_measured(case, tested, where, f"{key}.measured")
     check_samples(config.ensemble, structures, where)
     for index, case in enumerate(config.cases):
         motion = scaled(motions[case.motion], case.scale, case.motion)
@@ -254,7 +255,7 @@ def check_measured(case, structure, where, key):
     with faults_of(where, f"{key}.campaign"):
         campaign = load_campaign(case.measured.campaign)
         tested = load_structure(campaign.structure)
-    if not tested.same_as(structure):
+    if tested.content != structure.content:
         raise InputError(
             where,
             f"{key}.campaign",
@@ -289,6 +290,25 @@ def check_fragility(asked, config, structures, where):
     _one_of(asked.model, config.models, where, "fragility.model")
     if asked.size > config.ensemble.size:
         raise InputError(where, "fragility.size", f"expected at most ensemble.size, {config.ensemble.size}")
+
+
+def check_extension(asked, config, structures, where):
+    """Pairs of cases that differ by the cause alone."""
+    names = [case.name for case in config.cases]
+    for extended, nominal in asked.cases.items():
+        key = f"extension.cases.{extended}"
+        _one_of(extended, names, where, "extension.cases")
+        _one_of(nominal, names, where, key)
+        pair = [config.case(name) for name in (extended, nominal)]
+        if [bool(structures[case.structure].file.extension) for case in pair] != [True, False]:
+            raise InputError(
+                where, key, "expected a structure that states an `extension`, and one that does not"
+            )
+        alike, others = (case.model_copy(update={"name": "", "structure": ""}) for case in pair)
+        if alike != others:
+            raise InputError(where, key, f"expected the motion, window, samples and test of {nominal}")
+    for name in asked.named_by:
+        _one_of(name, asked.cases, where, "extension.named_by")
 
 
 def check_calibration(asked, config, structures, where):

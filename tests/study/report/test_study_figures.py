@@ -11,8 +11,8 @@ from blockshake.geometry.structure import load_structure
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.scene.structure_picture import plot_understood
 from blockshake.simulation.models import MODELS
+from blockshake.study.ensembles.displacement_figure import interactive_displacements, plot_displacements
 from blockshake.study.report.content import load_content
-from blockshake.study.report.displacement_figure import interactive_displacements, plot_displacements
 from blockshake.study.report.motion_figure import plot_spectra
 from blockshake.study.sampling.figure import bin_count
 

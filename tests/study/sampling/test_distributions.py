@@ -8,6 +8,7 @@ from blockshake.errors import InputError
 from blockshake.study.sampling.distributions import (
     TABLE_2,
     Lognormal,
+    Tabulated,
     draw_true_parameters,
     load_distributions,
     parameter_unit,
@@ -130,3 +131,63 @@ def test_true_parameters_scatter_about_the_means_given_and_leave_the_others_out(
     assert draw_true_parameters(7, {name: 2.0 * TABLE_2[name].mean}) == {
         name: pytest.approx(2.0 * usual[name])
     }
+
+
+def test_a_tabulated_variable_of_two_values_is_uniform():
+    """Mean (a + b) / 2, variance (b - a)^2 / 12, density 1 / (b - a), quantile a + p (b - a)."""
+    variable = Tabulated(distribution="tabulated", values=(-1.0, 3.0))
+    assert variable.mean == pytest.approx(1.0)
+    assert variable.median == pytest.approx(1.0)
+    assert variable.cov == pytest.approx(4.0 / np.sqrt(12.0), rel=1e-5)  # the midpoint rule of 640 points
+    np.testing.assert_allclose(variable.quantile([0.0, 0.25, 1.0]), [-1.0, 0.0, 3.0])
+    np.testing.assert_allclose(variable.density([-1.5, -0.5, 2.9, 3.1]), [0.0, 0.25, 0.25, 0.0])
+    np.testing.assert_allclose(variable.stratum_medians(4), [-0.5, 0.5, 1.5, 2.5])
+    np.testing.assert_allclose(variable.stratum_means(4), [-0.5, 0.5, 1.5, 2.5])
+
+
+def test_the_density_of_a_tabulated_variable_is_that_of_its_quantiles():
+    variable = Tabulated(distribution="tabulated", values=(0.0, 1.0, 1.5, 4.0))
+    fine = np.linspace(-1.0, 5.0, 60_001)
+    density = variable.density(fine)
+    assert integrate.trapezoid(density, fine) == pytest.approx(1.0, abs=1e-3)
+    assert integrate.trapezoid(fine * density, fine) == pytest.approx(variable.mean, abs=1e-3)
+    # an even part of the probability between two values that follow each other
+    assert integrate.quad(lambda value: float(variable.density(value)), 1.0, 1.5)[0] == pytest.approx(
+        1.0 / 3.0
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "entry", "line"),
+    [
+        (
+            "extension.shapes.block.chamfer",
+            {"distribution": "tabulated", "values": [2.0, 1.0]},
+            "values that rise",
+        ),
+        (
+            "extension.shapes.block.colour",
+            {"distribution": "tabulated", "values": [1.0, 2.0]},
+            "unknown parameter",
+        ),
+        ("shapes.block.chamfer", {"distribution": "tabulated", "values": [1.0, 2.0]}, "unknown parameter"),
+        ("extension.shapes.block.chamfer", {"distribution": "tabulated", "mean": 1.0}, "unknown key"),
+    ],
+)
+def test_a_wrong_tabulated_variable_is_named(name, entry, line):
+    with pytest.raises(InputError, match=line) as error:
+        load_distributions({name: entry}, "study.yaml")
+    assert f"study.yaml: distributions.{name}" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [
+        ("shapes.block.chamfer", "m"),
+        ("bodies.block-2.mass_offset.x", "m"),
+        ("joints.slab.block-1.compliance", "m3/N"),
+        ("external_forces.0.amplitude", "N"),
+    ],
+)
+def test_units_of_what_a_cause_states(name, unit):
+    assert parameter_unit(f"extension.{name}") == unit

@@ -15,7 +15,7 @@ _SIGMAS = 1.645  # of a Gaussian, within which nine tenths lie
 _FORM = 0.05  # share of a fault's size by which it may vary with the reading, as that of a real sensor does
 
 
-def conclude(decision, findings, kinds, caveats=(), measured=None):
+def conclude(decision, findings, kinds, caveats=(), measured=None, judged=None):
     """`Verdict` of a campaign.
 
     Parameters
@@ -27,6 +27,8 @@ def conclude(decision, findings, kinds, caveats=(), measured=None):
         ``channel`` or ``transducer`` by the name of the recorder's sensor; any other sensor with a fault is a marker.
     caveats : sequence of str
     measured : MeasuredGain, optional
+    judged : dict, optional
+        ``structure`` and ``tests`` of the verdict.
 
     Notes
     -----
@@ -74,6 +76,8 @@ def conclude(decision, findings, kinds, caveats=(), measured=None):
         limits=decision.limits,
         word=word,
         missing=missing,
+        extension=decision.extending,
+        **judged or {},
     )
 
 

@@ -6,13 +6,13 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, JsonValue, model_validator
 
-from blockshake.diagnosis.answer.decision import Estimate, Measurement
+from blockshake.diagnosis.answer.decision import Cause, Estimate, Measurement
 from blockshake.diagnosis.verdict.ladder import ESTABLISHED, NOTHING, ONE_OF, PROBABLE, UNKNOWN
 from blockshake.files import load_json, write_json
 from blockshake.statistics.resampling import limits_of
 from blockshake.validation import Count, Finite, Fraction, Strict, validated
 
-VERSION = 3
+VERSION = 4
 OF_A_GAIN = 0.9  # probability of the interval of a gain
 
 
@@ -100,6 +100,13 @@ class Verdict(Strict):
     missing: tuple[str, ...] = ()
     row_gain: Gain | None = None
     next_tests: tuple[Measurement, ...] = ()
+    extension: tuple[Cause, ...] = Field(
+        (), description="the likeliest cause of every part, by which a study is extended"
+    )
+    structure: str = Field("", description="digest of what was tested, by its content")
+    tests: dict[str, str] = Field(
+        default_factory=dict, description="digests of the files that it was judged by"
+    )
 
     @model_validator(mode="after")
     def _consistent(self):

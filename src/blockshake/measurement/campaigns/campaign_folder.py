@@ -13,7 +13,7 @@ def motion_in_folder(motion, folder):
     """Name of a motion in the campaign: a shipped name, or the file copied to the folder as it was published."""
     if motion in shipped_names("motions"):
         return motion
-    _copy(motion, folder / Path(motion).name)
+    copy_beside(motion, folder / Path(motion).name)
     return Path(motion).name
 
 
@@ -22,13 +22,14 @@ def structure_in_folder(structure, loaded, folder):
     if structure in shipped_names("structures"):
         return structure
     meshes = [shape.mesh for shape in loaded.file.shapes.values() if shape.mesh]
-    _copy(structure, folder / "structure.yaml")
+    copy_beside(structure, folder / "structure.yaml")
     for mesh in meshes:
-        _copy(Path(structure).parent / mesh, folder / mesh)
+        copy_beside(Path(structure).parent / mesh, folder / mesh)
     return "structure.yaml"
 
 
-def _copy(source, target):
+def copy_beside(source, target):
+    """Copy a file to a path, unless it is that file."""
     if Path(source).resolve() != target.resolve():
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(source, target)

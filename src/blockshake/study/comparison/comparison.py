@@ -63,12 +63,12 @@ def compare_case(batches, twins, named, base):
     `simulate_twins` by model, or None; ``named`` and ``base`` as of `coverage_of_case`, None where the case is
     compared with no test.
     """
-    ensembles = {model: _first_samples(files) for model, files in batches.items()}
+    ensembles = {model: first_samples(files) for model, files in batches.items()}
     loaded = {model: load_made(path) for model, path in twins.items() if path}
     return compare_models(ensembles, loaded, measured_on_clock(named, base) if named else None)
 
 
-def _first_samples(files):
+def first_samples(files):
     """Ensemble of the first samples in files that follow each other, `MOST` at most."""
     parts, count = [], 0
     for file in files:
@@ -294,6 +294,13 @@ def _numerics(counted, twins, limit):
     )
 
 
+def score_parts(ensemble, measured):
+    """Mean differences [m] of samples from the measured curves, and from each other, as `ensemble_score` takes them."""
+    read, curves = (one.to_numpy() for one in curves_along_x(measured, ensemble))
+    seen = np.where(np.isfinite(read), curves, np.nan)
+    return mean_differences(seen, read[None])[:, 0].mean(axis=1), mean_differences(seen, seen).mean(axis=2)
+
+
 def _scores(counted, measured, seed):
     """Scores against the measured curves, and how they differ from model to model."""
     models = list(counted)
@@ -302,11 +309,8 @@ def _scores(counted, measured, seed):
         size = ensemble.sizes["sample"]
         if measured is None or size < FEWEST:
             continue
-        read, curves = (one.to_numpy() for one in curves_along_x(measured, ensemble))
-        seen = np.where(np.isfinite(read), curves, np.nan)
         weights = resampled_weights(size, _generator(seed, "score", model))
-        away = mean_differences(seen, read[None])[:, 0].mean(axis=1)
-        drawn[model] = ensemble_score(away, mean_differences(seen, seen).mean(axis=2), weights)
+        drawn[model] = ensemble_score(*score_parts(ensemble, measured), weights)
     shape = (len(models), len(models))
     score, interval = np.full(len(models), np.nan), np.full((2, len(models)), np.nan)
     difference, difference_interval = np.full(shape, np.nan), np.full((2, *shape), np.nan)

@@ -124,6 +124,8 @@ class Content:
         From `calibrate`, where the study asks for one; a case alone has none.
     fragility : dict of str to xarray.Dataset
         From `fragility`, by case; empty where the study asks for none.
+    changes : dict of str to xarray.Dataset
+        From `changes`, by the case with the cause; empty where the study has none.
     timings : tuple of Timing
     digests : dict of str to str
         Of input files and of tables that all samples come from, by path.
@@ -141,6 +143,7 @@ class Content:
     calibrated: tuple
     calibration: dict | None
     fragility: dict
+    changes: dict
     timings: tuple
     digests: dict
     versions: dict
@@ -202,6 +205,7 @@ def load_content(study, results, logs, only=None):
         calibrated=_calibrated(read["stiffness"], read["waves"]),
         calibration=next(iter(read["calibration"].values()), None),
         fragility={case: made for (case, _), made in read["fragility"].items()},
+        changes={case: made for (case, _), made in read["changes"].items()},
         timings=read_timings(
             logs,
             {(model, case.name): one.samples for case in loaded.values() for model, one in case.responses.items()},

@@ -5,6 +5,7 @@ from blockshake.pages.blocks import Document, numbered
 from blockshake.pages.writing import write_html, write_pdf
 from blockshake.study.calibration.section import calibration
 from blockshake.study.comparison.section import models
+from blockshake.study.extension.section import extension
 from blockshake.study.fragility.section import fragility
 from blockshake.study.report.closing_sections import checks, limits, origin, timings
 from blockshake.study.report.content import load_content
@@ -27,13 +28,14 @@ _SECTIONS = (
     sensitivities,
     calibration,
     statements,
+    extension,
     checks,
     timings,
     limits,
     origin,
 )
-# these judge the study as a whole
-_NOT_OF_A_CASE = (statements,)
+# these judge the study as a whole, or several cases
+_NOT_OF_A_CASE = (statements, extension)
 
 
 def make_report(study, results, logs, html, pdf, paper):

@@ -15,9 +15,9 @@ from blockshake.pages.wording import (
     share_words,
 )
 from blockshake.study.comparison.tables import block_tables
+from blockshake.study.ensembles.displacement_figure import interactive_displacements, plot_displacements
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.ensembles.outcomes import count_outcomes, shortfall
-from blockshake.study.report.displacement_figure import interactive_displacements, plot_displacements
 from blockshake.study.report.joint_blocks import joint_blocks
 from blockshake.study.report.moving import moving_samples, plot_still, usual_magnification
 from blockshake.study.sensitivity.findings import quiet_markers

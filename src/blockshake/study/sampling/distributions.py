@@ -1,16 +1,17 @@
-"""Random variables of the study: log-normal, by dotted parameter name, Table 2 by default."""
+"""Random variables of the study, log-normal or tabulated, by dotted parameter name; Table 2 by default."""
 
 import re
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, field_validator
 from scipy.special import ndtr, ndtri
 
 from blockshake.errors import InputError
-from blockshake.quantities import PHYSICAL
+from blockshake.geometry.schema import EXTENSION
+from blockshake.quantities import PHYSICAL, unit_of
 from blockshake.simulation.models import CALIBRATED
-from blockshake.validation import Positive, Strict, validated
+from blockshake.validation import Finite, Positive, Strict, validated
 
 _PROPERTIES = {
     quantity.name.rsplit(".", 1)[1]: quantity.unit
@@ -29,7 +30,9 @@ class Lognormal(Strict):
     The two parameters of the logarithm follow exactly: variance ``ln(1 + cov^2)`` and mean ``ln(mean) - variance / 2``.
     """
 
-    distribution: Literal["lognormal"] = Field("lognormal", description="the one kind there is")
+    distribution: Literal["lognormal"] = Field(
+        "lognormal", description="the usual kind; the other is `tabulated`, with `values`"
+    )
     mean: Positive = Field(description="mean of the variable itself, SI")
     cov: Positive = Field(description="standard deviation over mean [1]")
 
@@ -66,6 +69,64 @@ class Lognormal(Strict):
         """
         edges = ndtri(np.arange(size + 1) / size)
         return size * self.mean * np.diff(ndtr(edges - self.log_deviation))
+
+
+_FINE = 64  # points of a stratum whose mean is taken
+
+
+class Tabulated(Strict):
+    """A variable of any shape, such as a posterior, by its quantiles; straight between them."""
+
+    distribution: Literal["tabulated"] = Field(description="the other kind")
+    values: Annotated[tuple[Finite, ...], Field(min_length=2)] = Field(
+        description="quantiles at even steps of the probability from 0 to 1, rising, SI"
+    )
+
+    @field_validator("values")
+    @classmethod
+    def _rising(cls, values):
+        if not (np.diff(values) > 0.0).all():
+            raise ValueError("expected values that rise")
+        return values
+
+    @property
+    def mean(self):
+        """Mean of the variable."""
+        return float(np.mean(0.5 * np.add(self.values[1:], self.values[:-1])))
+
+    @property
+    def cov(self):
+        """Standard deviation over the size of the mean [1], from the fine points of ten strata."""
+        return float(self._points(10).std() / abs(self.mean)) if self.mean else np.inf
+
+    @property
+    def median(self):
+        """Value with half the probability below it."""
+        return float(self.quantile(0.5))
+
+    def quantile(self, probability):
+        """Values with the probabilities ``probability`` (float or array, in [0, 1]) below them."""
+        return np.interp(probability, np.linspace(0.0, 1.0, len(self.values)), self.values)
+
+    def density(self, value):
+        """Probability density, in one over the variable's unit."""
+        parts = 1.0 / (np.diff(self.values) * (len(self.values) - 1))
+        part = np.searchsorted(self.values, value, side="right")
+        return np.concatenate([[0.0], parts, [0.0]])[part]
+
+    def stratum_medians(self, size):
+        """Medians of ``size`` strata of equal probability, rising, shape (size,)."""
+        return self.quantile((np.arange(size) + 0.5) / size)
+
+    def stratum_means(self, size):
+        """Means of the variable within ``size`` strata of equal probability, rising, shape (size,)."""
+        return self._points(size).mean(axis=1)
+
+    def _points(self, size):
+        return self.quantile((np.arange(size * _FINE) + 0.5) / (size * _FINE)).reshape(size, _FINE)
+
+
+Distribution = Lognormal | Tabulated
 
 
 def known_as(name, names):
@@ -108,15 +169,16 @@ def load_distributions(mapping, where):
     Parameters
     ----------
     mapping : dict of str to dict, or None
-        ``{name: {distribution: lognormal, mean: ..., cov: ...}}``, names as
-        ``friction.MATERIAL.MATERIAL``, ``materials.MATERIAL.PROPERTY`` or ``shapes.SHAPE.hollow``. It replaces
+        ``{name: {distribution: lognormal, mean: ..., cov: ...}}`` or ``{distribution: tabulated, values: ...}``, names
+        as ``friction.MATERIAL.MATERIAL``, ``materials.MATERIAL.PROPERTY``, ``shapes.SHAPE.hollow`` or, of structures
+        that state an extension, ``extension.NAME`` of any number. It replaces
         Table 2 as a whole: what it does not name is not random. None means Table 2.
     where : str
         File or option to name in an error.
 
     Returns
     -------
-    dict of str to Lognormal
+    dict of str to Lognormal or Tabulated
         In the order of the mapping.
 
     Raises
@@ -130,17 +192,30 @@ def load_distributions(mapping, where):
         raise InputError(where, "distributions", "expected a mapping of parameter names to distributions")
     variables = {}
     for name, entry in mapping.items():
-        if _NAME.fullmatch(str(name)) is None:
+        if _unit(str(name)) is None:
             raise InputError(
                 where,
                 f"distributions.{name}",
-                "unknown parameter; expected friction.MATERIAL.MATERIAL, shapes.SHAPE.hollow or "
+                "unknown parameter; expected friction.MATERIAL.MATERIAL, shapes.SHAPE.hollow, extension.NAME or "
                 f"materials.MATERIAL.PROPERTY with one of the properties {', '.join(_PROPERTIES)}",
             )
         if twin := known_as(name, variables):
             raise InputError(where, f"distributions.{name}", f"expected every pair once; it is {twin} too")
-        variables[name] = validated(Lognormal, entry, where, f"distributions.{name}")
+        kind = (
+            Tabulated if isinstance(entry, dict) and entry.get("distribution") == "tabulated" else Lognormal
+        )
+        variables[name] = validated(kind, entry, where, f"distributions.{name}")
     return variables
+
+
+def _unit(name):
+    """Unit of a parameter that may be random; None of no such one."""
+    if name.startswith(EXTENSION):
+        return unit_of(name.removeprefix(EXTENSION))
+    if not _NAME.fullmatch(name):
+        return None
+    kind, _, key = name.split(".")
+    return {"friction": "1", "shapes": "m"}.get(kind) or _PROPERTIES[key]
 
 
 def parameter_unit(name):
@@ -151,9 +226,8 @@ def parameter_unit(name):
     InputError
         No parameter that a design can hold.
     """
-    if _NAME.fullmatch(name):
-        kind, _, key = name.split(".")
-        return {"friction": "1", "shapes": "m"}.get(kind) or _PROPERTIES[key]
+    if unit := _unit(name):
+        return unit
     if name in CALIBRATED:
         return "N/m3"
     raise InputError(

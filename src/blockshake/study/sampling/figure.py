@@ -14,7 +14,7 @@ _ROW_HEIGHT = 0.044  # m of paper
 def plot_samples(design, distributions):
     """Figure of the density of each sampled variable beside its target.
 
-    ``design``: one row a sample, columns the dotted names, SI; ``distributions``: `Lognormal` targets by dotted name.
+    ``design``: one row a sample, columns the dotted names, SI; ``distributions``: targets by dotted name.
     """
     rows = -(-len(distributions) // _COLUMNS)
     figure = new_figure(_ROW_HEIGHT * rows + 0.008)

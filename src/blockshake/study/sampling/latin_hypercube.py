@@ -94,7 +94,7 @@ def draw_samples(
         Samples, 10 to a million; as many strata of equal probability, each hit once by each variable.
     seed : int
         Not negative; same seed, same values.
-    distributions : dict of str to Lognormal or dict
+    distributions : dict of str to Lognormal, Tabulated or dict
         By dotted name, also in the notation of a study, see `load_distributions`; Table 2 of Zhou et al. (2023) by
         default.
     correlation : pandas.DataFrame, str or path, optional

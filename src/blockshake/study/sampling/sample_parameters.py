@@ -1,5 +1,7 @@
 """Parameters of one structure that a sample of the design stands for."""
 
+from blockshake.geometry.schema import EXTENSION
+from blockshake.geometry.structure_file import dotted_values
 from blockshake.simulation.models import solver_of
 
 
@@ -7,7 +9,8 @@ def sample_parameters(row, structure, linked):
     """Parameters of one sample that this structure has, by dotted name, from a row that has stiffness too.
 
     ``linked``: parameters that take another's sampled value. Parameters of a material, pair or box that the structure
-    does not have are left out: configuration 1 has no steel.
+    does not have are left out: configuration 1 has no steel, and only a structure that states an extension has
+    parameters ``extension.NAME``.
     """
     values = {str(name): float(value) for name, value in row.items()}
     values |= {name: values[source] for name, source in linked.items() if source in values}
@@ -17,6 +20,9 @@ def sample_parameters(row, structure, linked):
 def has_parameter(structure, name):
     """Whether a structure has the material, the pair or the box that a parameter describes, by its dotted name."""
     file, (kind, *parts) = structure.file, name.split(".")
+    if name.startswith(EXTENSION):
+        stated = dotted_values(file.model_dump(mode="json")) if file.extension else {}
+        return name.removeprefix(EXTENSION) in stated
     if kind == "materials":
         return parts[0] in file.materials
     if kind == "friction":

@@ -88,7 +88,7 @@ def _table(content):
             ", ".join(one.removeprefix("configuration-") for one in content.users(name)) or "no case",
         ))  # fmt: skip
     return Table(
-        "Random variables, all log-normal: mean and coefficient of variation (COV) of the target and of the "
+        "Random variables: mean and coefficient of variation (COV) of the target and of the "
         "samples, and the cases whose structure has the material or the pair.",
         ("Variable", "Unit", "Mean, target", "Mean, samples", "COV, target [%]", "COV, samples [%]", "Cases"),
         tuple(rows), "llrrrrl",

@@ -1,0 +1,136 @@
+"""Section on an extended study: changes by the cause, beside what was measured, and its gain on measured tests."""
+
+import numpy as np
+
+from blockshake.pages.blocks import Figure, Items, Section, Table, Text
+from blockshake.pages.drawing import svg_of
+from blockshake.pages.rows import face_markers, main_bodies
+from blockshake.pages.wording import MISSING, millimetres, model_label, number, percent, quantile_percent
+from blockshake.statistics.intervals import samples_needed
+from blockshake.study.ensembles.displacement_figure import interactive_displacements, plot_displacements
+from blockshake.study.extension.changes import HIGH, QUANTITIES, SIDES
+from blockshake.study.fragility.fragility import SAFE
+
+_WORDS = {
+    "median_drift": ("median of the drift [mm]", millimetres),
+    "drift": (f"{quantile_percent(HIGH)} quantile of the drift [mm]", millimetres),
+    "uplift": (f"{quantile_percent(HIGH)} quantile of the uplift [mm]", millimetres),
+    "collapse": ("probability of collapse [%]", percent),
+    "safe_scale": (f"safe factor of the motion, {quantile_percent(SAFE)} fail [1]", number),
+}
+
+
+def extension(content):
+    """Changes by a cause; None where no case has one more than another."""
+    if not content.changes:
+        return None
+    pairs = content.study["extension"]["cases"]
+    blocks = [
+        Text(
+            "Every sample was simulated twice, with the same values of all other variables: by the structure without "
+            "and by that with the cause which measured tests speak for. Drift: largest displacement along x of any "
+            "block's markers from the slab. Uplift: largest of any joint, at the middle of the face. Peaks of samples "
+            "that fell are lower limits."
+        ),
+        Items(tuple(words for name in pairs for words in sentences(content, name))),
+        _table(content, pairs),
+        *(_figure(content.cases[name], content.cases[nominal]) for name, nominal in pairs.items()),
+        *_transfer(content),
+    ]
+    return Section("Effect of the cause", "extension", tuple(blocks))
+
+
+def _table(content, pairs):
+    caption = (
+        "Change: with the cause less without it. Limits of 95 % in brackets, by drawing the pairs of samples "
+        "again; those of shares are Clopper and Pearson's, those of safe factors likelihood's. Limits of a "
+        f"{quantile_percent(HIGH)} quantile hold less often than stated where fewer than {samples_needed(HIGH)} "
+        "pairs bear them."
+    )
+    header = ("Case", "Model", "Quantity", "Without the cause", "With the cause", "Change")
+    rows = tuple(row for name in pairs for row in _rows(content.changes[name], name))
+    return Table(caption, header, rows, "lllrrr")
+
+
+def _known(result):
+    """Model and quantity of all changes that are known, with the entries of both."""
+    for model in result["model"].values:
+        for quantity in QUANTITIES:
+            at = result.sel(model=model, quantity=quantity)
+            if np.isfinite(at["value"]).all():
+                yield model, quantity, at
+
+
+def _rows(result, name):
+    for model, quantity, at in _known(result):
+        words, show = _WORDS[quantity]
+        yield (
+            name,
+            model_label(model),
+            words,
+            *(_limited(at.sel(side=side), "value", show) for side in SIDES),
+        )
+
+
+def _limited(at, name, show):
+    return f"{show(at[name])} [{', '.join(show(limit) for limit in at[f'{name}_interval'].values)}]"
+
+
+def sentences(content, name):
+    """Sentences for whoever must decide, a model each: which quantities the cause changes beyond their limits."""
+    result, cause = content.changes[name], content.cases[name].structure.file.extension
+    for model in result["model"].values:
+        told, silent = [], []
+        for of, quantity, at in _known(result):
+            (words, show), change = _WORDS[quantity], at.sel(side="change")
+            low, high = change["value_interval"].values
+            if of == model and (low > 0.0 or high < 0.0):
+                both = " to ".join(show(value) for value in at["value"].values[:2])
+                told.append(f"{words} from {both}, by {_limited(change, 'value', show)}")
+            elif of == model:
+                silent.append(words.partition(" [")[0])
+        count = int(result["paired"].sel(model=model))
+        yield (
+            f"{name}, {model_label(model)}, {count} pairs of samples: {cause} changes "
+            f"{'; '.join(told) or 'nothing beyond its limits'}."
+            + (f" Not told from no change: {', '.join(silent)}." if silent else "")
+        )
+
+
+def _figure(case, nominal):
+    markers = face_markers(case.structure)
+    bodies = main_bodies(case.structure, markers)
+    envelopes = {
+        f"{model_label(model)}, {word} the cause": one.responses[model].envelope
+        for model in case.responses
+        for word, one in (("without", nominal), ("with", case))
+    }
+    shown = envelopes, case.measured, [markers[body] for body in bodies], bodies, "slab", case.synthetic
+    measured = "" if case.measured is None else f"; dashed: {case.curve_word}"
+    return Figure(
+        f"{nominal.name}: displacement relative to the slab, without and with the cause{measured}.",
+        svg_of(plot_displacements, *shown),
+        interactive=interactive_displacements(*shown),
+    )
+
+
+def _transfer(content):
+    """Gain of the cause on measured tests, those that it was named by and those that it was not; none without tests."""
+    rows = []
+    for name, result in content.changes.items():
+        case, named = content.cases[name], name in content.study["extension"]["named_by"]
+        for model in result["model"].values if case.measured is not None else ():
+            at = result.sel(model=model)
+            known = np.isfinite(at["gain"])
+            gain = _limited(at, "gain", lambda share: number(share, 2)) if known else MISSING
+            test = f"{case.settings['measured']['test']}, {case.curve_word}"
+            scores = map(millimetres, at["score"].values)
+            rows.append((name, test, "yes" if named else "no", model_label(model), *scores, gain))
+    caption = (
+        "Whether naming the cause predicts measured tests. Score: continuous ranked probability score of the samples "
+        "against the measured curves, relative to the slab, mean over blocks and times; smaller is better. Gain: share "
+        "of the error without the cause that the cause removes, 1 where nothing is left, none where the samples "
+        "without the cause fit within chance or are too few. A test that the cause was named by tests no prediction."
+    )
+    header = ("Case", "Test", "Named by it", "Model", "Score without [mm]", "Score with [mm]", "Gain [1]")
+    return [Table(caption, header, tuple(rows), "llllrrr")] if rows else []
