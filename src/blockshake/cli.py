@@ -185,6 +185,7 @@ def _parser():
         "--costs", metavar="COSTS.yaml", help="of one measurement more, over that of a shake"
     )
     command.add_argument("--output", required=True, metavar="DIR", help="of plan.json and plan.html")
+
     command = add("extend-study", _extend_study, "a study in which the cause of a verdict is a variable")
     command.add_argument("verdict", metavar="VERDICT.json", help="of `blockshake diagnose`")
     command.add_argument("study", metavar="STUDY.yaml", help="an ordinary study of what was tested")
