@@ -1,5 +1,6 @@
 """Folders of what may be made anew: compiled kernels, and what libraries keep, where no home can be written to."""
 
+import functools
 import logging
 import os
 import tempfile
@@ -28,7 +29,7 @@ def set_cache_home():
 
 
 def kernel_folder(digest):
-    """Folder of the compiled kernels of some sources.
+    """Folder of the compiled kernels of some sources, or of what reading sources came to.
 
     In ``BLOCKSHAKE_CACHE`` where that holds them or can be written to, else in the cache of `set_cache_home`.
     """
@@ -37,8 +38,13 @@ def kernel_folder(digest):
         folder = Path(named) / digest
         if folder.is_dir() or _takes_files(Path(named)):
             return folder
-        _log.warning("BLOCKSHAKE_CACHE: %s cannot be written to; %s is taken", named, cache)
+        _say_not_taken(named, cache.parent)
     return cache
+
+
+@functools.cache
+def _say_not_taken(named, taken):
+    _log.warning("BLOCKSHAKE_CACHE: %s cannot be written to; %s is taken", named, taken)
 
 
 def _user_cache():

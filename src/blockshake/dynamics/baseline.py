@@ -4,9 +4,9 @@ from dataclasses import replace
 from typing import Annotated, Literal
 
 import numpy as np
+import scipy
 from pydantic import BeforeValidator, Field
 from scipy import fft
-from scipy.signal import detrend
 
 from blockshake.dynamics.intensity import motion_figures
 from blockshake.dynamics.motion import CHANNELS, PITCH, ground_motion
@@ -225,7 +225,9 @@ def _corrected(motion, corner, where, reason):
     before, pad = _accelerations(motion), int(np.ceil(pad / step))
     n_rows = len(breaks) + 2 * pad
     after = {
-        axis: np.roll(high_pass(detrend(values), step, corner, _ORDER, fast_length(n_rows)), pad)[:n_rows]
+        axis: np.roll(
+            high_pass(scipy.signal.detrend(values), step, corner, _ORDER, fast_length(n_rows)), pad
+        )[:n_rows]
         for axis, values in before.items()
     }
     corrected = ground_motion(motion.name, step * np.arange(n_rows), after, motion.kind, motion.attributes)

@@ -4,8 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.stats import chi2, f
+import scipy
 
 MOST_MISFIT = 0.5  # of the misfit that taking an exchange back may leave
 
@@ -102,8 +101,12 @@ def chance_within(estimate, covariance, tolerance, freedom=np.inf):
         return np.linalg.norm(nearest(multiplier)) - tolerance
 
     largest = (np.linalg.norm(estimate) / tolerance) / variance.min()
-    distance = ((along - nearest(brentq(outside, 0.0, largest))) ** 2 / variance).sum()
-    return float(chi2.sf(distance, size) if np.isinf(freedom) else f.sf(distance / size, size, freedom))
+    distance = ((along - nearest(scipy.optimize.brentq(outside, 0.0, largest))) ** 2 / variance).sum()
+    return float(
+        scipy.stats.chi2.sf(distance, size)
+        if np.isinf(freedom)
+        else scipy.stats.f.sf(distance / size, size, freedom)
+    )
 
 
 def chance_of_misfit(before, after, variance):

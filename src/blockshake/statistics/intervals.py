@@ -3,7 +3,7 @@
 from itertools import count
 
 import numpy as np
-from scipy.stats import beta, binom
+import scipy
 
 CONFIDENCE = 0.95
 SURE_FROM = 6  # samples: `samples_needed` for the median
@@ -27,8 +27,8 @@ def share_interval(count, trials):
     trials as independent; those of a Latin hypercube are spread more evenly, which makes it wider still.
     """
     tail = 0.5 - 0.5 * CONFIDENCE
-    lower = beta.ppf(tail, count, trials - count + 1) if count > 0 else 0.0
-    upper = beta.ppf(1.0 - tail, count + 1, trials - count) if count < trials else 1.0
+    lower = scipy.stats.beta.ppf(tail, count, trials - count + 1) if count > 0 else 0.0
+    upper = scipy.stats.beta.ppf(1.0 - tail, count + 1, trials - count) if count < trials else 1.0
     return float(lower), float(upper)
 
 
@@ -89,11 +89,15 @@ def quantile_ranks(size, probability):
     ((18, 33), None, (50, 59))
     """
     tail = 0.5 - 0.5 * CONFIDENCE
-    lower = max(int(binom.ppf(tail, size, probability)), 1)
-    upper = min(int(binom.ppf(1.0 - tail, size, probability)) + 1, size)
+    lower = max(int(scipy.stats.binom.ppf(tail, size, probability)), 1)
+    upper = min(int(scipy.stats.binom.ppf(1.0 - tail, size, probability)) + 1, size)
 
     def holds():
-        return binom.cdf(upper - 1, size, probability) - binom.cdf(lower - 1, size, probability) >= CONFIDENCE
+        return (
+            scipy.stats.binom.cdf(upper - 1, size, probability)
+            - scipy.stats.binom.cdf(lower - 1, size, probability)
+            >= CONFIDENCE
+        )
 
     while not holds() and lower > 1:
         lower -= 1

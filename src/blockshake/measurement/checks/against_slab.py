@@ -1,7 +1,7 @@
 """Accelerometers and blocks against the slab's markers: clocks, units, signs and axes that the readings betray."""
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
+import scipy
 
 from blockshake.errors import InputError
 from blockshake.measurement.campaigns.clocks import BAND, RELATED, SHORTEST
@@ -143,8 +143,8 @@ def _unfit(time, values):
 def _band(time, values):
     known = np.isfinite(values)
     whole = np.interp(time, time[known], values[known])
-    sections = butter(4, BAND, btype="bandpass", fs=1.0 / np.median(np.diff(time)), output="sos")
-    return sosfiltfilt(sections, whole - whole.mean())
+    sections = scipy.signal.butter(4, BAND, btype="bandpass", fs=1.0 / np.median(np.diff(time)), output="sos")
+    return scipy.signal.sosfiltfilt(sections, whole - whole.mean())
 
 
 def _correlation(first, second):
