@@ -1,7 +1,6 @@
 """What the rules of a diagnosis share: campaigns by name, their plans, and which files follow from a decision."""
 
 import re
-from functools import cache
 
 
 def by_name(folders, without):
