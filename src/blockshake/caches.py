@@ -1,6 +1,5 @@
 """Folders of what may be made anew: compiled kernels, and what libraries keep, where no home can be written to."""
 
-import functools
 import logging
 import os
 import tempfile
@@ -17,7 +16,7 @@ def set_cache_home():
     The folder is ``XDG_CACHE_HOME``, else ``~/.cache``, which all libraries look for by themselves (XDG Base Directory
     Specification, version 0.8). Where neither can be written to it is a temporary one, with a remark.
     """
-    if _takes_files(_user_cache()):
+    if _takes_files(user_cache()):
         return
     try:
         folder = _temporary_cache()
@@ -29,25 +28,20 @@ def set_cache_home():
 
 
 def kernel_folder(digest):
-    """Folder of the compiled kernels of some sources, or of what reading sources came to.
+    """Folder of the compiled kernels of some sources.
 
     In ``BLOCKSHAKE_CACHE`` where that holds them or can be written to, else in the cache of `set_cache_home`.
     """
-    cache = _user_cache() / "blockshake" / digest
+    cache = user_cache() / "blockshake" / digest
     if named := os.environ.get("BLOCKSHAKE_CACHE"):
         folder = Path(named) / digest
         if folder.is_dir() or _takes_files(Path(named)):
             return folder
-        _say_not_taken(named, cache.parent)
+        _log.warning("BLOCKSHAKE_CACHE: %s cannot be written to; %s is taken", named, cache)
     return cache
 
 
-@functools.cache
-def _say_not_taken(named, taken):
-    _log.warning("BLOCKSHAKE_CACHE: %s cannot be written to; %s is taken", named, taken)
-
-
-def _user_cache():
+def user_cache():
     """Cache of the user, there or not."""
     named = Path(os.environ.get("XDG_CACHE_HOME", ""))
     if named.is_absolute():

@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 from typing import NamedTuple
 
-from blockshake.caches import kernel_folder
+from blockshake.caches import user_cache
 from blockshake.errors import InputError
 from blockshake.files import HOME, PACKAGE, content_digest, write_text
 
@@ -28,7 +28,7 @@ _COMPUTE_NOTHING = (
 # Of these only the functions that are taken count, each with its own imports.
 _BY_FUNCTION = ("diagnosis/steps.py",)
 _READER = sys.version + Path(__file__).read_text(encoding="utf-8")  # by which a text is read
-_KEPT = kernel_folder("sources")  # folder of what texts came to
+_KEPT = user_cache() / "blockshake" / "sources"  # folder of what texts came to
 _HOLD_STATEMENTS = ast.stmt, ast.ExceptHandler, ast.match_case
 
 

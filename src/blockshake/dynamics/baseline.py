@@ -222,12 +222,10 @@ def _corrected(motion, corner, where, reason):
         )
     pad = 1.5 * _ORDER / corner
     check_samples(len(breaks), step, pad, where)
-    before, pad = _accelerations(motion), int(np.ceil(pad / step))
+    before, pad, detrend = _accelerations(motion), int(np.ceil(pad / step)), scipy.signal.detrend
     n_rows = len(breaks) + 2 * pad
     after = {
-        axis: np.roll(
-            high_pass(scipy.signal.detrend(values), step, corner, _ORDER, fast_length(n_rows)), pad
-        )[:n_rows]
+        axis: np.roll(high_pass(detrend(values), step, corner, _ORDER, fast_length(n_rows)), pad)[:n_rows]
         for axis, values in before.items()
     }
     corrected = ground_motion(motion.name, step * np.arange(n_rows), after, motion.kind, motion.attributes)

@@ -102,11 +102,8 @@ def chance_within(estimate, covariance, tolerance, freedom=np.inf):
 
     largest = (np.linalg.norm(estimate) / tolerance) / variance.min()
     distance = ((along - nearest(scipy.optimize.brentq(outside, 0.0, largest))) ** 2 / variance).sum()
-    return float(
-        scipy.stats.chi2.sf(distance, size)
-        if np.isinf(freedom)
-        else scipy.stats.f.sf(distance / size, size, freedom)
-    )
+    chi2, f = scipy.stats.chi2, scipy.stats.f
+    return float(chi2.sf(distance, size) if np.isinf(freedom) else f.sf(distance / size, size, freedom))
 
 
 def chance_of_misfit(before, after, variance):

@@ -26,9 +26,9 @@ def share_interval(count, trials):
     Clopper and Pearson (1934): never holds the probability in fewer than 95 of 100 cases, often in more. It takes the
     trials as independent; those of a Latin hypercube are spread more evenly, which makes it wider still.
     """
-    tail = 0.5 - 0.5 * CONFIDENCE
-    lower = scipy.stats.beta.ppf(tail, count, trials - count + 1) if count > 0 else 0.0
-    upper = scipy.stats.beta.ppf(1.0 - tail, count + 1, trials - count) if count < trials else 1.0
+    tail, beta = 0.5 - 0.5 * CONFIDENCE, scipy.stats.beta
+    lower = beta.ppf(tail, count, trials - count + 1) if count > 0 else 0.0
+    upper = beta.ppf(1.0 - tail, count + 1, trials - count) if count < trials else 1.0
     return float(lower), float(upper)
 
 
@@ -88,16 +88,12 @@ def quantile_ranks(size, probability):
     >>> quantile_ranks(50, 0.5), quantile_ranks(58, 0.95), quantile_ranks(59, 0.95)
     ((18, 33), None, (50, 59))
     """
-    tail = 0.5 - 0.5 * CONFIDENCE
-    lower = max(int(scipy.stats.binom.ppf(tail, size, probability)), 1)
-    upper = min(int(scipy.stats.binom.ppf(1.0 - tail, size, probability)) + 1, size)
+    tail, binom = 0.5 - 0.5 * CONFIDENCE, scipy.stats.binom(size, probability)
+    lower = max(int(binom.ppf(tail)), 1)
+    upper = min(int(binom.ppf(1.0 - tail)) + 1, size)
 
     def holds():
-        return (
-            scipy.stats.binom.cdf(upper - 1, size, probability)
-            - scipy.stats.binom.cdf(lower - 1, size, probability)
-            >= CONFIDENCE
-        )
+        return binom.cdf(upper - 1) - binom.cdf(lower - 1) >= CONFIDENCE
 
     while not holds() and lower > 1:
         lower -= 1

@@ -234,6 +234,10 @@ def _band(time, values):
     if known.mean() < 0.5 or time[-1] - time[0] < SHORTEST:
         return None
     grid = np.arange(time[0], time[-1], 1.0 / _RATE)
-    sections = scipy.signal.butter(4, BAND, btype="bandpass", fs=_RATE, output="sos")
-    whole = np.interp(grid, time[known], values[known])
-    return scipy.signal.sosfiltfilt(sections, whole - whole.mean())
+    return in_band(np.interp(grid, time[known], values[known]), _RATE)
+
+
+def in_band(values, rate):
+    """Values (n_times,) without gaps, at a rate [Hz], in `BAND` alone and without lag."""
+    sections = scipy.signal.butter(4, BAND, btype="bandpass", fs=rate, output="sos")
+    return scipy.signal.sosfiltfilt(sections, values - values.mean())

@@ -77,9 +77,7 @@ def likeliest(smoothed, tried, step, tolerance):
 
     best = tried[int(np.argmin([unlikely(value) for value in tried]))]
     bounds = best - step, best + step
-    return scipy.optimize.minimize_scalar(
-        unlikely, bounds=bounds, method="bounded", options={"xatol": tolerance}
-    ).x
+    return scipy.optimize.minimize_scalar(unlikely, bounds=bounds, options={"xatol": tolerance}).x
 
 
 def together(time, marker, marker_noise, time_acc, accelerometer, accelerometer_noise):
