@@ -2,9 +2,8 @@ from blockshake.files import write_dataset
 from blockshake.log import logging_to
 from blockshake.store import Store
 from blockshake.study.comparison.twins import simulate_twins
-from blockshake.study.ensembles.batch import CaseRuns, batch_rows
+from blockshake.study.ensembles.batch import DECIMALS, CaseRuns, batch_rows
 from blockshake.study.ensembles.case_input import driving_motions
-from blockshake.study.ensembles.ensemble import DECIMALS
 
 with logging_to(snakemake.log[0]) as say:
     of, runs = snakemake.params, CaseRuns(**snakemake.params.runs)
