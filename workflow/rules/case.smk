@@ -8,6 +8,8 @@ def campaign_files(case, every=False):
     tests = campaign.open.values() if every else [campaign.open[measured["test"]]]
     return files_of_tests(campaign, tests)
 
+from functools import cache
+
 
 def files_of_tests(campaign, tests):
     """The file of a campaign, those of some of its tests, and others that describe them, as far as they are there."""

@@ -3,7 +3,6 @@
 import contextlib
 import os
 import sys
-from functools import cache
 from pathlib import Path
 
 # scripts find the package around the workflow, a checkout's or an installed one, in any environment
