@@ -1,5 +1,8 @@
 """Files that go from rule to rule, and the entries of a case's configuration that its runs depend on."""
 
+from functools import cache
+
+
 @cache
 def campaign_files(case, every=False):
     """The test that a case is compared with, or every one that is not sealed, and what describes it."""
@@ -7,8 +10,6 @@ def campaign_files(case, every=False):
     campaign = load_campaign(measured["campaign"])
     tests = campaign.open.values() if every else [campaign.open[measured["test"]]]
     return files_of_tests(campaign, tests)
-
-from functools import cache
 
 
 def files_of_tests(campaign, tests):
