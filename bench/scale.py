@@ -24,7 +24,7 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import HOME, load_json, shipped, write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.store import load_made
-from blockshake.study.ensembles.batch import DECIMALS
+from blockshake.study.ensembles.ensemble import DECIMALS
 from blockshake.study.sampling.latin_hypercube import load_design
 
 _CHILDREN = Path(__file__).with_name("scale_children.py")
@@ -35,7 +35,6 @@ _DURATION = 1.0  # s, of a sample
 _TARGETS = {
     "make_envelope": "results/scale/envelopes/nscd-rigid/stack.nc",
     "measure_sensitivity": "results/scale/sensitivities/nscd-rigid/stack.nc",
-    "show_samples": "results/scale/shown/nscd-rigid/stack.nc",
     "compare_models": "results/scale/differences/stack.nc",
     "make_report": "reports/scale.html",
 }

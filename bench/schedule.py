@@ -1,7 +1,7 @@
 """How long a study takes on more cores: its jobs begun one after the other as cores get free, by measured job times.
 
 The jobs and what each waits for are those of a dry run. The times are the CPU times in the logs of a finished default
-study, of the same rule, model and configuration, by sample and by step. The start of a job and its imports, some 7 CPU
+study, of the same rule, model and configuration, by sample and by step. The start of a job and its imports, some 2 CPU
 seconds, are not in them.
 """
 

@@ -1,5 +1,7 @@
 import copy
 import signal
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -11,6 +13,11 @@ from blockshake.simulation.run_dataset import run_dataset
 from blockshake.solvers.ls_dem.driver import simulate_ls_dem
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 
+# models that share kernels, the longest first; each row is compiled by a process of its own
+COMPILED = (("ls-dem",), ("nscd-rigid", "nscd-elastic", "nscd-viscoelastic"))
+COMPILE = (
+    "import sys, blockshake.simulation.simulate as s; [s.compile_kernels(model) for model in sys.argv[1:]]"
+)
 SHAPES = {
     "slab": {"box": [3.0, 3.0, 0.2]},
     "block": {"box": [0.8, 2.4, 1.6], "chamfer": 0.02},
@@ -18,6 +25,13 @@ SHAPES = {
     "cube": {"box": [1.0, 1.0, 1.0]},
 }
 SLAB = {"name": "slab", "shape": "slab", "position": [0.0, 0.0, -0.1], "driven": True}
+
+
+def pytest_sessionstart(session):
+    """Compile the models before the workers of a parallel run start, which would each compile the same kernels."""
+    if getattr(session.config.option, "numprocesses", None) and not hasattr(session.config, "workerinput"):
+        processes = [subprocess.Popen([sys.executable, "-c", COMPILE, *models]) for models in COMPILED]
+        assert [process.wait() for process in processes] == [0, 0]
 
 
 @pytest.fixture(scope="session")

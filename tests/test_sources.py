@@ -100,6 +100,7 @@ def test_an_ensemble_of_one_solver_does_not_watch_the_driver_of_the_other(model,
 @pytest.fixture
 def package(tmp_path, monkeypatch):
     monkeypatch.setattr(sources, "PACKAGE", tmp_path)
+    monkeypatch.setattr(sources, "_KEPT", tmp_path / "kept")
     (tmp_path / "part").mkdir()
     (tmp_path / "part" / "a.py").write_text(
         '"""Doc."""\n\n\ndef f(x):\n    """Add one."""\n    return x + 1\n\n\ndef g():\n    return 2\n'
@@ -113,6 +114,7 @@ def _forget():
     """Forget the digests of sources: these change while a test runs, as they never do under a program."""
     source_digest.cache_clear()
     sources._read.cache_clear()
+    sources._imported.cache_clear()
 
 
 def _digests():
@@ -139,3 +141,18 @@ def test_the_source_digest_follows_the_code_that_is_named(package):
     assert new_g == g
     (package / "part" / "a.py").rename(package / "part" / "c.py")
     assert source_digest("part/c.py") != new_whole  # a moved module is another program
+
+
+def test_what_a_text_came_to_is_kept_and_a_damaged_file_is_made_anew(package):
+    before = _digests()
+    kept = sorted((package / "kept").glob("*.json"))
+    assert len(kept) == 3  # the file, and each of its functions
+    for damage in (lambda path: path.write_bytes(path.read_bytes()[:-9]), lambda path: path.write_text("3"),
+                   lambda path: path.write_text(path.read_text().replace("a", "b"))):  # fmt: skip
+        for path in kept:
+            damage(path)
+        assert _digests() == before
+    contents = [path.read_bytes() for path in kept]
+    (package / "part" / "a.py").write_text((package / "part" / "a.py").read_text().replace("x + 1", "x + 2"))
+    assert _digests()[1] != before[1]
+    assert [path.read_bytes() for path in kept] == contents

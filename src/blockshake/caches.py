@@ -16,7 +16,7 @@ def set_cache_home():
     The folder is ``XDG_CACHE_HOME``, else ``~/.cache``, which all libraries look for by themselves (XDG Base Directory
     Specification, version 0.8). Where neither can be written to it is a temporary one, with a remark.
     """
-    if _takes_files(_user_cache()):
+    if _takes_files(user_cache()):
         return
     try:
         folder = _temporary_cache()
@@ -32,7 +32,7 @@ def kernel_folder(digest):
 
     In ``BLOCKSHAKE_CACHE`` where that holds them or can be written to, else in the cache of `set_cache_home`.
     """
-    cache = _user_cache() / "blockshake" / digest
+    cache = user_cache() / "blockshake" / digest
     if named := os.environ.get("BLOCKSHAKE_CACHE"):
         folder = Path(named) / digest
         if folder.is_dir() or _takes_files(Path(named)):
@@ -41,7 +41,7 @@ def kernel_folder(digest):
     return cache
 
 
-def _user_cache():
+def user_cache():
     """Cache of the user, there or not."""
     named = Path(os.environ.get("XDG_CACHE_HOME", ""))
     if named.is_absolute():

@@ -4,11 +4,17 @@ Nothing is listed by hand: a script's sources are the files that it imports, dir
 """
 
 import ast
+import contextlib
 import functools
 import hashlib
+import json
+import sys
+from pathlib import Path
 from typing import NamedTuple
 
-from blockshake.files import HOME, PACKAGE
+from blockshake.caches import user_cache
+from blockshake.errors import InputError
+from blockshake.files import HOME, PACKAGE, content_digest, write_text
 
 _SCRIPTS = HOME / "workflow" / "scripts"
 # These write logs, say where kernels are kept, or decide what is in the names of the files made and in the parameters
@@ -21,9 +27,12 @@ _COMPUTE_NOTHING = (
 )
 # Of these only the functions that are taken count, each with its own imports.
 _BY_FUNCTION = ("diagnosis/steps.py",)
+_READER = sys.version + Path(__file__).read_text(encoding="utf-8")  # by which a text is read
+_KEPT = user_cache() / "blockshake" / "sources"  # folder of what texts came to
 _HOLD_STATEMENTS = ast.stmt, ast.ExceptHandler, ast.match_case
 
 
+@functools.cache
 def script_sources(script, *models):
     """Sources of a rule.
 
@@ -42,6 +51,7 @@ def script_sources(script, *models):
     return _closure([*_read(_SCRIPTS / f"{script}.py").imported, *_modules_of(models)])
 
 
+@functools.cache
 def kernel_sources(*models):
     """Sources of what a model's driver runs."""
     return _closure(_modules_of(models))
@@ -113,16 +123,31 @@ def _closure(sources):
 
 @functools.cache
 def _read(path, function=""):
-    """Read a file, or its top and one of its functions."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+    """Read a file, or its top and one of its functions; what a text comes to is kept, since parsing all takes long."""
+    text = path.read_text(encoding="utf-8")
+    kept = _KEPT / f"{content_digest(_READER, function, text)}.json"
+    try:
+        digest, imported, seal = json.loads(kept.read_bytes())
+    except (OSError, TypeError, ValueError):  # none, or one that was cut
+        seal = None
+    if seal is None or seal != content_digest(digest, imported):
+        digest, imported = _parsed(text, function)
+        with contextlib.suppress(InputError, OSError):
+            write_text(kept, json.dumps([digest, imported, content_digest(digest, imported)]))
+    return _Source(bytes.fromhex(digest), [_imported(*one) for one in imported])
+
+
+def _parsed(text, function):
+    """Digest of the syntax of a text, or of its top and one of its functions, and modules and names that it imports."""
+    tree = ast.parse(text)
     if function:
         tree.body = [node for node in tree.body if getattr(node, "name", function) == function]
     imported = []
     for statement in _statements(tree):
         _drop_docstring(statement)
         if isinstance(statement, ast.ImportFrom) and (statement.module or "").startswith("blockshake"):
-            imported += [_imported(statement.module, alias.name) for alias in statement.names]
-    return _Source(hashlib.sha256(ast.dump(tree).encode()).digest(), imported)
+            imported += [[statement.module, alias.name] for alias in statement.names]
+    return hashlib.sha256(ast.dump(tree).encode()).hexdigest(), imported
 
 
 def _statements(tree):
@@ -140,6 +165,7 @@ def _drop_docstring(node):
         del body[0]
 
 
+@functools.cache
 def _imported(module, name):
     """Source that a name of a module comes from."""
     inside = _file(f"{module}.{name}")

@@ -1,6 +1,9 @@
 """Files that go from rule to rule, and the entries of a case's configuration that its runs depend on."""
 
+from functools import cache
 
+
+@cache
 def campaign_files(case, every=False):
     """The test that a case is compared with, or every one that is not sealed, and what describes it."""
     measured = CASES[case]["measured"]
@@ -104,18 +107,21 @@ def batch_files(wildcards, model=None, case=None):
     )
 
 
+def batches_of_models(wildcards):
+    """Batch files of a case by every model, each under a name of its own for the rule's input."""
+    return {f"batches {model}": batch_files(wildcards, model) for model in MODELS}
+
+
 def files_of_models(wildcards):
-    """Batch files of a case by every model, and their twins, each under a name of its own for the rule's input."""
+    """These, and the twins of every model that has any."""
     twins = "results/{study}/twins/{model}/{case}.nc"
-    named = {f"batches {model}": batch_files(wildcards, model) for model in MODELS}
-    named |= {
+    return batches_of_models(wildcards) | {
         f"twins {model}": twins.format(
             study=wildcards.study, model=model, case=wildcards.case
         )
         for model in MODELS
         if CHECKED.has_twins(model, wildcards.case)
     }
-    return named
 
 
 def files_of_pair(wildcards):

@@ -1,7 +1,6 @@
 """What the rules of a diagnosis share: campaigns by name, their plans, and which files follow from a decision."""
 
 import re
-from functools import cache
 
 
 def by_name(folders, without):
@@ -55,14 +54,14 @@ def ensemble_files(campaign, solvers=NULL_MODELS):
     return expand(
         "results/diagnosis/{campaign}/ensembles/{number}-{solver}.nc",
         campaign=campaign,
-        number=range(len(plan(campaign).tests)),
+        number=range(len(plan(campaign).simulated)),
         solver=solvers,
     )
 
 
 def misfit_files(wildcards):
     """The misfit, at an effort that simulates anything."""
-    simulated = plan(wildcards.campaign).tests
+    simulated = plan(wildcards.campaign).simulated
     return [f"results/diagnosis/{wildcards.campaign}/misfit.nc"] if simulated else []
 
 
@@ -124,7 +123,7 @@ def extended_files(wildcards):
     """Ensembles of sealed tests by both solvers, where a cause extends the model and anything is simulated."""
     from blockshake.diagnosis.gain.extended_model import acting_causes
 
-    simulated = plan(wildcards.campaign).tests
+    simulated = plan(wildcards.campaign).simulated
     extended = simulated and acting_causes(decided(wildcards))
     return expand(
         f"results/diagnosis/{wildcards.campaign}/extended/{{solver}}.nc",

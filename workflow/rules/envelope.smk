@@ -1,11 +1,12 @@
 rule make_envelope:
-    """Bounds and quantiles over the samples, and what each sample came to."""
+    """Bounds and quantiles over the samples, what each came to, and the motion of the median and of the largest one."""
     input:
         batches=batch_files,
         structure=structure_file,
     output:
         envelope="results/{study}/envelopes/{model}/{case}.nc",
         samples="results/{study}/samples/{model}/{case}.nc",
+        shown="results/{study}/shown/{model}/{case}.nc",
     log:
         "logs/{study}/make_envelope/{model}/{case}.log",
     conda:
@@ -18,35 +19,20 @@ rule make_envelope:
         "../scripts/make_envelope.py"
 
 
-rule show_samples:
-    """Motion of the sample of the median peak and of that of the largest one, for the report."""
-    input:
-        batches=batch_files,
-    output:
-        "results/{study}/shown/{model}/{case}.nc",
-    log:
-        "logs/{study}/show_samples/{model}/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    params:
-        source=source_of("show_samples"),
-    script:
-        "../scripts/show_samples.py"
-
-
 rule compare_with_measurement:
-    """Coverage of the measured curves by the ensemble's bounds, with its leave-one-out reference."""
+    """Coverage of the measured curves by the bounds of every model, with its leave-one-out reference."""
     input:
-        batches=batch_files,
+        unpack(batches_of_models),
         base="results/{study}/inputs/{case}.nc",
         campaign=lambda wildcards: campaign_files(wildcards.case),
     output:
-        "results/{study}/comparisons/{model}/{case}.nc",
+        [f"results/{{study}}/comparisons/{model}/{{case}}.nc" for model in MODELS],
     log:
-        "logs/{study}/compare_with_measurement/{model}/{case}.log",
+        "logs/{study}/compare_with_measurement/{case}.log",
     conda:
         "../envs/blockshake.yaml"
     params:
+        models=MODELS,
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
         source=source_of("compare_with_measurement"),
     script:

@@ -7,21 +7,21 @@ from typing import NamedTuple
 
 from blockshake.errors import InputError
 
-# CPU seconds of jobs beside their simulations: 5 s of the start, and what Snakemake's benchmarks of the default study
-# said (2026-11-23, on the machine of docs/results/bench.md, where the plan of that study took `_PLANNED`)
-_USUAL = 7.0
+# CPU seconds of jobs beside their simulations: the start, and what the logs of the default study said (2026-11-26, on
+# the machine of docs/results/bench.md, where the plan of that study took `_PLANNED`)
+_USUAL = 5.5
 _FIXED = {
     "all": 0.0,
-    "calibrate_stiffness": 9.0,
-    "compare_models": 14.0,
-    "compile_kernels": 53.0,
-    "decide": 13.0,
-    "make_diagnosis_report": 13.0,
-    "make_report": 20.0,
-    "measure_gain": 14.0,
-    "measure_sensitivity": 9.0,
+    "calibrate_stiffness": 7.5,
+    "compare_models": 12.5,
+    "compile_kernels": 51.5,
+    "decide": 11.5,
+    "make_diagnosis_report": 11.5,
+    "make_report": 18.5,
+    "measure_gain": 12.5,
+    "measure_sensitivity": 7.5,
 }
-_PLANNED = 6.0  # CPU s
+_PLANNED = 5.0  # CPU s
 _ROW = re.compile(r"^(\w+) +(\d+)$", re.MULTILINE)
 
 

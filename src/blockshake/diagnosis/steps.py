@@ -183,7 +183,11 @@ def conclude(folder, runs, files):
     campaign = load_campaign(folder)
     judged = {
         "structure": load_structure(campaign.structure).content,
-        "tests": {name: file_digest(campaign.folder / campaign.tests[name].file) for name in decision.tests if campaign.tests[name].file},
+        "tests": {
+            name: file_digest(campaign.folder / campaign.tests[name].file)
+            for name in decision.tests
+            if campaign.tests[name].file
+        },
     }
     if (decision.parts or parity.findings) and not (files.gain or campaign.sealed):
         caveats.append("no gain was measured: there is no sealed test")

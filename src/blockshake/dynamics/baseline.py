@@ -4,9 +4,9 @@ from dataclasses import replace
 from typing import Annotated, Literal
 
 import numpy as np
+import scipy
 from pydantic import BeforeValidator, Field
 from scipy import fft
-from scipy.signal import detrend
 
 from blockshake.dynamics.intensity import motion_figures
 from blockshake.dynamics.motion import CHANNELS, PITCH, ground_motion
@@ -222,7 +222,7 @@ def _corrected(motion, corner, where, reason):
         )
     pad = 1.5 * _ORDER / corner
     check_samples(len(breaks), step, pad, where)
-    before, pad = _accelerations(motion), int(np.ceil(pad / step))
+    before, pad, detrend = _accelerations(motion), int(np.ceil(pad / step)), scipy.signal.detrend
     n_rows = len(breaks) + 2 * pad
     after = {
         axis: np.roll(high_pass(detrend(values), step, corner, _ORDER, fast_length(n_rows)), pad)[:n_rows]

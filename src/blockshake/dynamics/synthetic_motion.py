@@ -4,13 +4,14 @@ Windowed noise takes the Fourier shape of a point source and is then matched to 
 spectrum. The method, its sources and the figures reached are in docs/guide/motions.md.
 """
 
+from functools import lru_cache
 from itertools import pairwise
 from typing import Annotated, Literal
 
 import numpy as np
+import scipy
 from pydantic import Field, model_validator
 from scipy import fft
-from scipy.optimize import brentq
 from scipy.special import gammainc, ndtri
 
 from blockshake.dynamics.baseline import fast_length, high_pass
@@ -91,6 +92,7 @@ def load_synthetic(path):
     return validated(SyntheticMotion, load_yaml(path), path)
 
 
+@lru_cache(maxsize=8)
 def synthesise(parameters):
     """Ground motion along x from the parameters of a synthetic record.
 
@@ -157,7 +159,7 @@ def window(time, envelope):
     peak, level = envelope.peak, envelope.level
     b = -peak * np.log(level) / (1.0 + peak * (np.log(peak) - 1.0))
     quantiles = [
-        brentq(lambda x, share=share: gammainc(2.0 * b + 1.0, x) - share, 0.0, 100.0)
+        scipy.optimize.brentq(lambda x, share=share: gammainc(2.0 * b + 1.0, x) - share, 0.0, 100.0)
         for share in (0.05, 0.95)
     ]
     peak_time = 2.0 * b * envelope.significant_duration / (quantiles[1] - quantiles[0])

@@ -3,8 +3,8 @@
 from functools import cache
 
 import numpy as np
+import scipy
 from scipy.interpolate import CubicSpline
-from scipy.signal import cont2discrete, lfilter
 
 from blockshake.dynamics.motion import CHANNELS
 from blockshake.effects.effect import Columns, Effect, EffectParameter
@@ -36,13 +36,13 @@ def _filter(step, frequency, damping):
     """Coefficients of the oscillator for an input that is straight between uniform times."""
     omega = 2.0 * np.pi * frequency
     system = [omega**2], [1.0, 2.0 * damping * omega, omega**2]
-    numerator, denominator, _ = cont2discrete(system, step, method="foh")
+    numerator, denominator, _ = scipy.signal.cont2discrete(system, step, method="foh")
     return numerator[0], denominator
 
 
 def _response(acceleration, step, frequency, damping=_DAMPING):
     """Rotation by 1 rad s2/m of a history of acceleration at uniform times, straight between them, from rest."""
-    return lfilter(*_filter(round(step, 9), float(frequency), damping), acceleration)
+    return scipy.signal.lfilter(*_filter(round(step, 9), float(frequency), damping), acceleration)
 
 
 def _act(experiment, values, place):

@@ -4,8 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.stats import chi2, f
+import scipy
 
 MOST_MISFIT = 0.5  # of the misfit that taking an exchange back may leave
 
@@ -102,7 +101,8 @@ def chance_within(estimate, covariance, tolerance, freedom=np.inf):
         return np.linalg.norm(nearest(multiplier)) - tolerance
 
     largest = (np.linalg.norm(estimate) / tolerance) / variance.min()
-    distance = ((along - nearest(brentq(outside, 0.0, largest))) ** 2 / variance).sum()
+    distance = ((along - nearest(scipy.optimize.brentq(outside, 0.0, largest))) ** 2 / variance).sum()
+    chi2, f = scipy.stats.chi2, scipy.stats.f
     return float(chi2.sf(distance, size) if np.isinf(freedom) else f.sf(distance / size, size, freedom))
 
 

@@ -4,7 +4,7 @@ import dataclasses
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import linprog
+import scipy
 from scipy.sparse import csc_array, eye_array, hstack, vstack
 
 from blockshake.dynamics.collapse import COSINE_OF_TILT, collapse_limits
@@ -233,7 +233,7 @@ def _uncarried(structure, supports, ahead, up, watched):
     wanted = np.concatenate([weights.ravel(), np.zeros(3 * len(supports))])
     cost = np.zeros(matrix.shape[1])
     cost[: 2 * slack.shape[1]] = 1.0
-    program = linprog(cost, A_eq=matrix, b_eq=wanted, method="highs")
+    program = scipy.optimize.linprog(cost, A_eq=matrix, b_eq=wanted, method="highs")
     if program.fun < _UNCARRIED:
         return None
     motion = program.eqlin.marginals[: weights.size].reshape(weights.shape)

@@ -3,7 +3,7 @@
 from itertools import count
 
 import numpy as np
-from scipy.stats import beta, binom
+import scipy
 
 CONFIDENCE = 0.95
 SURE_FROM = 6  # samples: `samples_needed` for the median
@@ -28,7 +28,7 @@ def share_interval(count, trials, unknown=0):
     Clopper and Pearson (1934): never holds the probability in fewer than 95 of 100 cases, often in more. It takes the
     trials as independent; those of a Latin hypercube are spread more evenly, which makes it wider still.
     """
-    tail = 0.5 - 0.5 * CONFIDENCE
+    tail, beta = 0.5 - 0.5 * CONFIDENCE, scipy.stats.beta
     lower = beta.ppf(tail, count, trials + unknown - count + 1) if count > 0 else 0.0
     upper = beta.ppf(1.0 - tail, count + unknown + 1, trials - count) if count < trials else 1.0
     return float(lower), float(upper)
@@ -90,12 +90,12 @@ def quantile_ranks(size, probability):
     >>> quantile_ranks(50, 0.5), quantile_ranks(58, 0.95), quantile_ranks(59, 0.95)
     ((18, 33), None, (50, 59))
     """
-    tail = 0.5 - 0.5 * CONFIDENCE
-    lower = max(int(binom.ppf(tail, size, probability)), 1)
-    upper = min(int(binom.ppf(1.0 - tail, size, probability)) + 1, size)
+    tail, binom = 0.5 - 0.5 * CONFIDENCE, scipy.stats.binom(size, probability)
+    lower = max(int(binom.ppf(tail)), 1)
+    upper = min(int(binom.ppf(1.0 - tail)) + 1, size)
 
     def holds():
-        return binom.cdf(upper - 1, size, probability) - binom.cdf(lower - 1, size, probability) >= CONFIDENCE
+        return binom.cdf(upper - 1) - binom.cdf(lower - 1) >= CONFIDENCE
 
     while not holds() and lower > 1:
         lower -= 1

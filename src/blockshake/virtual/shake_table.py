@@ -1,8 +1,8 @@
 """One test on the virtual shake table: the stack put in place, surveyed, shaken and read."""
 
 import numpy as np
+import scipy
 from scipy.interpolate import CubicSpline
-from scipy.signal import lsim
 
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
@@ -83,7 +83,7 @@ def followed(experiment, table):
     command = experiment.motion.evaluate(times)[:, 0]
     command = command - command[0]
     omega = 2.0 * np.pi * table.corner
-    _, slow, _ = lsim(([omega], [1.0, omega]), command, times)
+    _, slow, _ = scipy.signal.lsim(([omega], [1.0, omega]), command, times)
     change = np.interp(breaks, times, (table.gain - 1.0) * command + table.high * (command - slow))
     experiment = experiment.with_motion(0, CubicSpline(breaks, change).c[::-1].T)
     if table.pitch == 0.0:

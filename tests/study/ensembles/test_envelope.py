@@ -4,8 +4,7 @@ import xarray as xr
 
 from blockshake.files import write_dataset
 from blockshake.study.ensembles import envelope as module
-from blockshake.study.ensembles.batch import DECIMALS
-from blockshake.study.ensembles.ensemble import join_batches
+from blockshake.study.ensembles.ensemble import DECIMALS, join_batches
 from blockshake.study.ensembles.envelope import QUANTILES, envelope, envelope_of_case, over_samples
 
 ROUNDING = 1e-12  # m

@@ -2,16 +2,17 @@
 
 import re
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from blockshake.diagnosis.nominal.nominal_model import MODELS
-from blockshake.diagnosis.nominal.planned_test import planned_sealed, planned_test
+from blockshake.diagnosis.nominal.planned_test import planned_motion, planned_sealed, planned_test
 from blockshake.effects.registry import EFFECTS
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE, content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Campaign, load_campaign
-from blockshake.measurement.campaigns.open_readings import read_open_tests
+from blockshake.measurement.campaigns.open_readings import open_test_names
 
 _CHECKOUT = PACKAGE.parents[1].resolve()
 ENSEMBLES_OF_SEALED_TEST = 4  # nominal, recalibrated, extended, placebo
@@ -59,32 +60,38 @@ class Plan:
     effort : Effort
     open : list of str
         Tests that are judged by.
-    tests : dict of str to PlannedTest
-        By name, those of them that are simulated.
+    simulated : list of str
+        Those of them that are simulated.
     """
 
     campaign: Campaign
     effort: Effort
     open: list
-    tests: dict
+    simulated: list
+
+    @cached_property
+    def tests(self):
+        """Those of them that are simulated, `PlannedTest` by name."""
+        structure = load_structure(self.campaign.structure) if self.simulated else None
+        return {name: planned_test(self.campaign, name, structure) for name in self.simulated}
 
     @property
     def sealed(self):
         """Sealed tests as they are simulated, by name; empty where nothing is simulated."""
-        names = self.campaign.sealed if self.tests else ()
+        names = self.campaign.sealed if self.simulated else ()
         return {name: planned_sealed(self.campaign, name, self.tests) for name in names}
 
     @property
     def runs(self):
         """Simulated tests in all nominal ensembles, twins with them."""
-        return len(MODELS) * len(self.tests) * (self.effort.draws + self.effort.twins)
+        return len(MODELS) * len(self.simulated) * (self.effort.draws + self.effort.twins)
 
     @property
     def runs_of_cause(self):
         """Simulated tests at most, once a cause was found: of the open tests with it, and of the sealed ones."""
         of_sealed = ENSEMBLES_OF_SEALED_TEST * self.effort.members + self.effort.twins
-        sealed = len(self.campaign.sealed) if self.tests else 0
-        return len(MODELS) * (len(self.tests) * self.effort.draws + sealed * of_sealed)
+        sealed = len(self.campaign.sealed) if self.simulated else 0
+        return len(MODELS) * (len(self.simulated) * self.effort.draws + sealed * of_sealed)
 
 
 def plan_diagnosis(folder, effort):
@@ -106,9 +113,9 @@ def plan_diagnosis(folder, effort):
     campaign, effort = load_campaign(folder), EFFORTS[effort]
     names = open_tests(campaign)
     chosen = [] if campaign.still or campaign.by_outcomes else simulated_tests(campaign, names, effort.tests)
-    structure = load_structure(campaign.structure) if chosen else None
-    tests = {name: planned_test(campaign, name, structure) for name in chosen}
-    return Plan(campaign, effort, names, tests)
+    for name in chosen:
+        planned_motion(campaign, name)  # which no job should be the first to miss
+    return Plan(campaign, effort, names, chosen)
 
 
 def open_tests(campaign):
@@ -127,7 +134,7 @@ def open_tests(campaign):
         )
     if campaign.still or campaign.by_outcomes:
         return list(campaign.open)
-    return list(read_open_tests(campaign, list(campaign.open)).tests)
+    return open_test_names(campaign)
 
 
 def simulated_tests(campaign, names, most):

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize
+import scipy
 from scipy.special import log_ndtr, logsumexp, ndtr
 
 # rad: below it a body hardly rocks, and a lean says nothing about a fall
@@ -93,7 +93,7 @@ def emulate(outcomes):
 
     start = np.zeros(n_motion + n_shares + 2)
     start[0] = value[known].mean()
-    best = minimize(
+    best = scipy.optimize.minimize(
         loss, start, method="L-BFGS-B", bounds=[(None, None)] * (len(start) - 2) + [(-4.0, 2.0)] * 2
     )
     means, log, slopes, spread = parts(best.x)

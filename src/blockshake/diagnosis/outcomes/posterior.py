@@ -3,10 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy.optimize import minimize
 from scipy.special import expit, logsumexp
-from scipy.stats import qmc
 
 from blockshake.diagnosis.outcomes.emulator import DISCREPANCIES, emulate
 from blockshake.diagnosis.outcomes.unknowns import UNKNOWNS
@@ -113,7 +112,7 @@ def prior(outcomes):
 def _drawn(causes):
     wide = unknowns_of(causes)
     bounds = [1.0 if number in wide else unknown.usual for number, unknown in enumerate(UNKNOWNS)]
-    return (2.0 * qmc.Halton(len(UNKNOWNS), seed=_SEED).random(_MODELS) - 1.0) * bounds
+    return (2.0 * scipy.stats.qmc.Halton(len(UNKNOWNS), seed=_SEED).random(_MODELS) - 1.0) * bounds
 
 
 def fitted_curve(outcomes, rows, fell):
@@ -132,4 +131,4 @@ def fitted_curve(outcomes, rows, fell):
             np.logaddexp(0.0, -sign * (columns[rows] @ slopes)).sum() + 0.5 * ((slopes[1:] / 3.0) ** 2).sum()
         )
 
-    return expit(columns @ minimize(loss, np.zeros(3)).x)
+    return expit(columns @ scipy.optimize.minimize(loss, np.zeros(3)).x)

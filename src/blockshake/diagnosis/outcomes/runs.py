@@ -3,8 +3,8 @@
 from functools import partial
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy.stats import qmc
 
 from blockshake.diagnosis.nominal.nominal_model import MODELS
 from blockshake.diagnosis.outcomes.unknowns import UNKNOWNS, model_at
@@ -47,7 +47,7 @@ def free_body(structure):
 
 def shares_of(number, draws):
     """Shares of the models of a test, by its number: the structure file's first, then Halton's next, (draws, n)."""
-    sequence = qmc.Halton(len(UNKNOWNS), seed=_SEED)
+    sequence = scipy.stats.qmc.Halton(len(UNKNOWNS), seed=_SEED)
     sequence.fast_forward(number * (draws - 1))
     return np.vstack([np.zeros(len(UNKNOWNS)), 2.0 * sequence.random(draws - 1) - 1.0])
 

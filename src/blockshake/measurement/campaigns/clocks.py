@@ -3,8 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize_scalar
-from scipy.signal import butter, correlate, sosfiltfilt
+import scipy
 
 from blockshake.measurement.sensors.accelerometers import shaken_channels
 from blockshake.measurement.sensors.markers import slab_displacement
@@ -75,7 +74,7 @@ def command_start(time, moved, command):
     def exactly(start):
         return correlation(lambda at: command.evaluate(at - start)[:, 0])
 
-    start = minimize_scalar(
+    start = scipy.optimize.minimize_scalar(
         lambda start: -abs(exactly(start)), bounds=(best - _COARSE, best + _COARSE), method="bounded",
         options={"xatol": 1e-6},
     ).x  # fmt: skip
@@ -213,12 +212,12 @@ def on_one_clock(test, structure):
 def _best_lag(moved, felt, apart):
     """Lag of the recorder's clock [s], the correlation there, and the largest one within 0.1 s."""
     fewest = int(SHORTEST * _RATE)
-    products = np.abs(correlate(felt, moved, mode="full"))
+    products = np.abs(scipy.signal.correlate(felt, moved, mode="full"))
     ones = (
-        correlate(felt**2, np.ones(len(moved)), mode="full"),
-        correlate(np.ones(len(felt)), moved**2, mode="full"),
+        scipy.signal.correlate(felt**2, np.ones(len(moved)), mode="full"),
+        scipy.signal.correlate(np.ones(len(felt)), moved**2, mode="full"),
     )
-    both = correlate(np.ones(len(felt)), np.ones(len(moved)), mode="full")
+    both = scipy.signal.correlate(np.ones(len(felt)), np.ones(len(moved)), mode="full")
     size = np.sqrt(np.maximum(ones[0] * ones[1], np.finfo(float).tiny))
     # a few strong cycles may lie within a short overlap: the energy outside of it counts as unexplained
     size = np.maximum(size, 0.5 * np.sqrt((felt @ felt) * (moved @ moved)))
@@ -235,6 +234,10 @@ def _band(time, values):
     if known.mean() < 0.5 or time[-1] - time[0] < SHORTEST:
         return None
     grid = np.arange(time[0], time[-1], 1.0 / _RATE)
-    sections = butter(4, BAND, btype="bandpass", fs=_RATE, output="sos")
-    whole = np.interp(grid, time[known], values[known])
-    return sosfiltfilt(sections, whole - whole.mean())
+    return in_band(np.interp(grid, time[known], values[known]), _RATE)
+
+
+def in_band(values, rate):
+    """Values (n_times,) without gaps, at a rate [Hz], in `BAND` alone and without lag."""
+    sections = scipy.signal.butter(4, BAND, btype="bandpass", fs=rate, output="sos")
+    return scipy.signal.sosfiltfilt(sections, values - values.mean())

@@ -1,6 +1,5 @@
 """The slab's markers, which are the input, held against the motion that was commanded."""
 
-from functools import lru_cache
 from os.path import isfile
 from typing import NamedTuple
 
@@ -133,13 +132,6 @@ def driven_axis_remarks(slab):
 def commanded_motion(campaign, entry):
     """The motion that was commanded in a test, None where the campaign names one that is not at hand."""
     path = campaign.folder / entry.motion
-    if isfile(path):
-        return _loaded(path, entry.scale, entry.baseline, path.stat().st_mtime_ns)
-    shipped = entry.motion in shipped_names("motions")
-    return _loaded(entry.motion, entry.scale, entry.baseline, 0) if shipped else None
-
-
-@lru_cache(maxsize=16)
-def _loaded(source, scale, baseline, changed):
-    """Motion of a source that was last changed at some time: a new file is read anew."""
-    return load_motion(source, scale, baseline)
+    if not isfile(path) and entry.motion not in shipped_names("motions"):
+        return None
+    return load_motion(path if isfile(path) else entry.motion, entry.scale, entry.baseline)

@@ -7,6 +7,7 @@ import numpy as np
 from blockshake.errors import InputError
 from blockshake.geometry.structure import Structure, load_structure
 from blockshake.measurement.campaigns.campaign import load_test
+from blockshake.measurement.campaigns.recorded_test import read_test
 from blockshake.measurement.motion.fall import find_fall, until_fall
 
 
@@ -38,6 +39,16 @@ def read_open_tests(campaign, names):
         if name not in campaign.open:
             raise InputError(campaign.folder, f"tests.{name}", f"expected one of {', '.join(campaign.open)}")
     return _readings(campaign, names)
+
+
+def open_test_names(campaign):
+    """Names of the tests of `read_open_tests`, for whoever needs no more of them."""
+    structure = load_structure(campaign.structure)
+    names = reversed(campaign.open)
+    first = {
+        _content(read_test(campaign.folder / campaign.tests[name].file, structure)): name for name in names
+    }
+    return [name for name in campaign.open if name in first.values()]
 
 
 def read_sealed_tests(campaign):

@@ -1,10 +1,9 @@
 """Accelerometers and blocks against the slab's markers: clocks, units, signs and axes that the readings betray."""
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
 
 from blockshake.errors import InputError
-from blockshake.measurement.campaigns.clocks import BAND, RELATED, SHORTEST
+from blockshake.measurement.campaigns.clocks import BAND, RELATED, SHORTEST, in_band
 from blockshake.measurement.sensors.accelerometers import EVEN
 
 _END = 0.5  # s at both ends, where the filter is not yet itself
@@ -142,9 +141,7 @@ def _unfit(time, values):
 
 def _band(time, values):
     known = np.isfinite(values)
-    whole = np.interp(time, time[known], values[known])
-    sections = butter(4, BAND, btype="bandpass", fs=1.0 / np.median(np.diff(time)), output="sos")
-    return sosfiltfilt(sections, whole - whole.mean())
+    return in_band(np.interp(time, time[known], values[known]), 1.0 / np.median(np.diff(time)))
 
 
 def _correlation(first, second):

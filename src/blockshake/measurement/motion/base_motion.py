@@ -7,7 +7,7 @@ The first reading's own error is in all displacements: the error is a constant a
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+import scipy
 
 from blockshake.measurement.motion.body_poses import TRANSLATION, body_poses, driven_body
 from blockshake.measurement.motion.kalman import N_STATES, smooth
@@ -77,7 +77,7 @@ def likeliest(smoothed, tried, step, tolerance):
 
     best = tried[int(np.argmin([unlikely(value) for value in tried]))]
     bounds = best - step, best + step
-    return minimize_scalar(unlikely, bounds=bounds, method="bounded", options={"xatol": tolerance}).x
+    return scipy.optimize.minimize_scalar(unlikely, bounds=bounds, options={"xatol": tolerance}).x
 
 
 def together(time, marker, marker_noise, time_acc, accelerometer, accelerometer_noise):

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from scipy.interpolate import CubicSpline
 
 from blockshake.geometry.rotations import rotation_matrices
@@ -119,11 +120,8 @@ def readings_of(forces, times):
 
 def low_pass(values):
     """The 50 Hz low-pass of finite values (n_fine, n_channels) at `FINE_RATE`, along the first axis, without lag."""
-    # imported here: a second of the start of each job that reads no accelerometer
-    from scipy.signal import butter, sosfiltfilt
-
-    sections = butter(ORDER, CUTOFF, fs=FINE_RATE, output="sos")
-    return sosfiltfilt(sections, values, axis=0, padlen=min(_PAD, len(values) - 1))
+    sections = scipy.signal.butter(ORDER, CUTOFF, fs=FINE_RATE, output="sos")
+    return scipy.signal.sosfiltfilt(sections, values, axis=0, padlen=min(_PAD, len(values) - 1))
 
 
 def _whole_states(*arrays):

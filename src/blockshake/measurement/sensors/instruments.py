@@ -1,10 +1,10 @@
 """The observation operator: what the sensors of a test read of a run, with all their faults as parameters."""
 
 import numpy as np
+import scipy
 import xarray as xr
 from pydantic import Field
 from scipy.interpolate import CubicSpline
-from scipy.signal import lfilter
 
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
@@ -154,7 +154,7 @@ def _noise(generator, shape, memory):
     if memory == 0.0:
         return white
     white[0] /= np.sqrt(1.0 - memory**2)
-    return lfilter([np.sqrt(1.0 - memory**2)], [1.0, -memory], white, axis=0)
+    return scipy.signal.lfilter([np.sqrt(1.0 - memory**2)], [1.0, -memory], white, axis=0)
 
 
 def _places(run, structure, instruments):

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
+import scipy
 import xarray as xr
 
 from blockshake.dynamics.system import FINISHED
@@ -204,9 +205,6 @@ def log_spectrum(test, structure, duration):
     A spectrum has the frequencies of a test of low amplitude as its peaks, and in a strong test what impacts excite. It
     does not know when: late rocking, whose phase nobody predicts, counts as far as it has the same strength.
     """
-    # imported here: a second of the start of each job that reads no spectrum
-    from scipy.signal import welch
-
     empty = xr.DataArray(
         np.empty((0, 0)), {"line": np.empty(0, dtype=int), "channel": np.empty(0, dtype=str)}
     )
@@ -217,7 +215,7 @@ def log_spectrum(test, structure, duration):
     rate = (len(read.time) - 1) / (read.time[-1] - read.time[0])
     if count < 2.0 * _SEGMENT * rate:
         return empty
-    _, power = welch(read.values[:count], rate, nperseg=round(_SEGMENT * rate), axis=0)
+    _, power = scipy.signal.welch(read.values[:count], rate, nperseg=round(_SEGMENT * rate), axis=0)
     power = np.log(np.maximum(power[1:], np.finfo(float).tiny))[: round(CUTOFF * _SEGMENT)]
     lines = np.arange(1, len(power) + 1)
     return xr.DataArray(power, {"line": lines, "channel": read.names}, attrs={"units": "1"})

@@ -11,12 +11,9 @@ from blockshake.simulation.models import solver_of
 from blockshake.simulation.run_histories import joint_figures
 from blockshake.simulation.simulate import simulate
 from blockshake.store import structure_digest
-from blockshake.study.ensembles.ensemble import run_as_sample
+from blockshake.study.ensembles.ensemble import DECIMALS, run_as_sample
 from blockshake.study.sampling.latin_hypercube import load_design
 from blockshake.study.sampling.sample_parameters import sample_parameters
-
-# digits kept in histories: 0.1 um, a thousandth of a marker's noise, and of a quaternion as much at a block's length
-DECIMALS = {"m": 7, "1": 8}
 
 
 class CaseRuns(NamedTuple):

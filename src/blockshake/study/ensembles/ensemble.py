@@ -14,6 +14,8 @@ RESIDUAL_WINDOW = 0.5  # s at the end of a run, averaged for the residual so tha
 FRAMES = ("inertial", "slab")
 POSES = ("position", "orientation")
 ALONG_X = {"axis": ["x"]}
+# digits kept in histories: 0.1 um, a thousandth of a marker's noise, and of a quaternion as much at a block's length
+DECIMALS = {"m": 7, "1": 8}
 _OF_ONE_RUN = ("status", "reason", "end_time", "sample", "parameters")
 
 
@@ -115,6 +117,11 @@ def sample_figures(ensemble):
     figures = ensemble.drop_dims(["time", "axis", "quaternion"], errors="ignore")
     figures.attrs = {**ensemble.attrs, "title": "samples of an ensemble of simulated runs"}
     return figures
+
+
+def figures_of_case(batches):
+    """`sample_figures` of the samples in these files, whose histories are not read."""
+    return sample_figures(join_batches(batches, (*POSES, "marker_displacement")))
 
 
 def _peak_rotation(orientation):

@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.dynamics.system import FALLEN, FINISHED
+from blockshake.geometry.reference_block import half_width
 from blockshake.simulation.run_histories import JOINT_FIGURES
 from blockshake.statistics.intervals import (
     CONFIDENCE,
@@ -30,8 +31,12 @@ def counted_samples(ensemble):
     return ensemble.isel(sample=np.isin(ensemble["status"].values, FINISHED))
 
 
-def envelope_of_case(batches, largest_drift):
-    """`envelope` of the samples in these files, whose histories are read some markers at a time."""
+def envelope_of_case(batches, largest_drift, structure=None):
+    """`envelope` of the samples in these files, whose histories are read some markers at a time.
+
+    ``largest_drift``: where it is None, `half_width` of the structure.
+    """
+    largest_drift = largest_drift or half_width(structure)
 
     def displacement(markers):
         return join_batches(batches, POSES, {"marker": markers})["marker_displacement"]

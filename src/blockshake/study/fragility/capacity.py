@@ -3,9 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize
+import scipy
 from scipy.special import ndtr, ndtri
-from scipy.stats import t
 
 from blockshake.statistics.intervals import CONFIDENCE
 
@@ -64,7 +63,7 @@ def fit_capacity(lower, upper):
 
     start = np.mean(middle), np.log(0.5 * np.ptp(ends))
     limits = [(ends.min(), ends.max()), (np.log(_SHARPEST), np.log(_WIDEST))]
-    answer = minimize(
+    answer = scipy.optimize.minimize(
         unlikely, start, method="Nelder-Mead", bounds=limits, options={"xatol": 1e-6, "fatol": 1e-9}
     )
     return Capacity(float(np.exp(answer.x[0])), float(np.exp(answer.x[1])))
@@ -97,7 +96,7 @@ def likely_capacities(lower, upper):
     for count, *bounds in zip(counts, low, high, strict=True):
         likelihood += count * _likelihood(*bounds, middle, spread)
     size = counts.sum()
-    least = 0.5 * size * np.log1p(t.ppf(0.5 + 0.5 * CONFIDENCE, size - 1) ** 2 / (size - 1))
+    least = 0.5 * size * np.log1p(scipy.stats.t.ppf(0.5 + 0.5 * CONFIDENCE, size - 1) ** 2 / (size - 1))
     likely = likelihood >= likelihood.max() - least
     if likely[[0, -1]].any() or likely[:, -1].any():
         return Capacity(np.full(1, np.nan), np.full(1, np.nan))

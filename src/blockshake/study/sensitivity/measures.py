@@ -4,7 +4,7 @@ Outputs are arrays (n_samples, n_outputs, n_components): a number has one compon
 """
 
 import numpy as np
-from scipy.stats import rankdata
+import scipy
 
 FEWEST_DEGREES = 5  # of freedom below which a partial correlation says nothing
 _NEGLIGIBLE = 1e-9  # of a standardised slope, and of a share of the variance
@@ -88,10 +88,10 @@ def partial_rank_correlation(inputs, outputs):
     empty = np.full((outputs.shape[1], n_inputs), np.nan), np.full(outputs.shape[1], np.nan)
     if degrees < FEWEST_DEGREES:
         return empty
-    ranks = _standardised(rankdata(inputs, axis=0))
+    ranks = _standardised(scipy.stats.rankdata(inputs, axis=0))
     inverse = np.linalg.pinv(ranks.T @ ranks / n_samples)
     with np.errstate(divide="ignore", invalid="ignore"):
-        along = _standardised(rankdata(outputs[:, :, 0], axis=0)).T @ ranks / n_samples
+        along = _standardised(scipy.stats.rankdata(outputs[:, :, 0], axis=0)).T @ ranks / n_samples
         slopes = _beyond_rounding(along @ inverse)
         unexplained = np.maximum(_beyond_rounding(1.0 - (slopes * along).sum(axis=1)), 0.0)
         scale = np.sqrt(slopes**2 + unexplained[:, None] * np.diag(inverse))

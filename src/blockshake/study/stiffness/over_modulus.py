@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from scipy.stats import pearsonr, spearmanr
+import scipy
 
 ONE_NUMBER = 1e-3  # relative spread below which a ratio counts as one number in all samples
 _LEVEL = 0.05  # chance at or below which a correlation is shown
@@ -27,7 +27,7 @@ def over_modulus(stiffness, modulus):
     return OverModulus(
         float(ratio.mean()),
         float(ratio.max() / ratio.min() - 1.0),
-        float(pearsonr(stiffness, modulus).statistic),
+        float(scipy.stats.pearsonr(stiffness, modulus).statistic),
     )
 
 
@@ -38,5 +38,5 @@ def grows_with_density(stiffness, modulus, density):
     """
     if over_modulus(stiffness, modulus).is_one_number:
         return False
-    correlation = spearmanr(stiffness / modulus, density)
+    correlation = scipy.stats.spearmanr(stiffness / modulus, density)
     return bool(correlation.statistic > 0.0 and correlation.pvalue <= _LEVEL)
