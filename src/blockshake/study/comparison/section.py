@@ -10,7 +10,6 @@ from blockshake.simulation.models import MODELS
 from blockshake.study.comparison.tables import (
     in_millimetres,
     larger_floor,
-    numerics_table,
     pairs_table,
     scores_table,
 )
@@ -31,7 +30,6 @@ def models(content):
         ),
         Items(tuple(map(case_words, content.cases.values()))),
         pairs_table(content),
-        numerics_table(content),
     ]
     scores = scores_table(content)
     if scores is not None:

@@ -1,4 +1,4 @@
-"""Tables of what differs between the models: blocks, pairs of models, numerics, scores."""
+"""Tables of what differs between the models: blocks, pairs of models, scores."""
 
 from itertools import combinations
 
@@ -8,7 +8,6 @@ from blockshake.pages.blocks import Table
 from blockshake.pages.rows import face_markers
 from blockshake.pages.wording import MISSING, given, millimetres, model_label, number
 from blockshake.statistics.intervals import SURE_FROM
-from blockshake.study.comparison.comparison import TOLD_APART_BY
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
 
 
@@ -83,31 +82,6 @@ def pairs_table(content):
             "Case", "Models", "Distance [mm]", "Chance [mm]", "Difference [mm]", "n", "Floors [mm]", "Parting [s]",
         ),
         tuple(rows), "llrrrrrr",
-    )  # fmt: skip
-
-
-def numerics_table(content):
-    """Floor and horizon of each model's numerics."""
-    rows = []
-    for case in content.cases.values():
-        found = case.differences
-        for model in found["model"].values:
-            at = found.sel(model=model)
-            rows.append((
-                case.name, model_label(model),
-                *(in_millimetres(at["floor"].sel(twin=one)) for one in ("nudged", "half-step")),
-                *(_seconds(at["horizon"].sel(twin=one), case) for one in ("nudged", "half-step")),
-            ))  # fmt: skip
-    return Table(
-        "Numerics of each model. Twins of the first sample: with a ground motion larger by one part in a million "
-        "(nudged), and with half the time step. Floor: mean difference from the twin. Horizon: when the sample is "
-        f"first told apart from its twin, by more than {given(TOLD_APART_BY)} standard deviations of a marker's noise "
-        f"at any block. {MISSING}: no twins, because the model ran fewer than three samples of the case.",
-        (
-            "Case", "Model", "Floor, nudged [mm]", "Floor, half step [mm]", "Horizon, nudged [s]",
-            "Horizon, half step [s]",
-        ),
-        tuple(rows), "llrrrr",
     )  # fmt: skip
 
 

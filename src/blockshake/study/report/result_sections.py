@@ -21,8 +21,6 @@ from blockshake.study.report.joint_blocks import joint_blocks
 from blockshake.study.report.moving import moving_samples, plot_still, usual_magnification
 from blockshake.study.sensitivity.findings import quiet_markers
 
-_PAPER_FIGURES = {f"configuration-{index}": 10 + index for index in (1, 2, 3, 4)}
-
 
 def responses(content):
     """Displacement of the blocks by every model, case by case."""
@@ -44,12 +42,9 @@ def _response(case, motion):
     markers = face_markers(case.structure)
     main = main_bodies(case.structure, markers)
     envelopes = {model: one.envelope for model, one in case.responses.items()}
-    paper = (
-        f" (after the paper's Fig. {_PAPER_FIGURES[case.name]})"
-        if case.name in _PAPER_FIGURES and case.settings["structure"] == case.name
-        else ""
-    )
-    some = "" if len(main) == len(markers) else "; all blocks are in the next figure"
+    blocks, marked = int((~case.structure.driven).sum()), len(markers)
+    every = "every block" if marked == blocks else f"the {marked} of {blocks} blocks that have a marker"
+    some = "" if len(main) == marked else "; others are in the figure before"
 
     def figure(bodies, frame, caption):
         chosen = [markers[body] for body in bodies]
@@ -57,6 +52,10 @@ def _response(case, motion):
         return Figure(
             caption, svg_of(plot_displacements, *shown), interactive=interactive_displacements(*shown)
         )
+
+    def measured_beside():
+        caption = f"{case.name}: displacement in the inertial frame, in which the coverage is read{some}."
+        return [figure(main, "inertial", caption), coverage_table(case)]
 
     return [
         Heading(case.title, f"response-{case.name}"),
@@ -67,14 +66,11 @@ def _response(case, motion):
         *_early_end(case, motion),
         *_gaps(case),
         *_lines(case, markers.values()),
-        figure(main, "inertial", f"{case.name}: displacement in the inertial frame{paper}{some}."),
+        figure(list(markers), "slab", f"{case.name}: displacement relative to the slab's marker, {every}."),
         *_moving(case),
         *block_tables(case),
-        *([] if case.measured is None else [coverage_table(case)]),
-        figure(
-            list(markers), "slab", f"{case.name}: displacement relative to the slab's marker, every block."
-        ),
         *joint_blocks(case),
+        *([] if case.measured is None else measured_beside()),
     ]
 
 

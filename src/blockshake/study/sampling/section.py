@@ -21,7 +21,7 @@ def samples(content):
             f"{summary['stratum']}.{_without_use(content)}"
         ),
         Figure(
-            "Histograms of the samples and target densities (after the paper's Fig. 8).",
+            "Histograms of the samples and target densities.",
             svg_of(plot_samples, content.design, content.distributions),
         ),
         _table(content),

@@ -1,0 +1,325 @@
+"""First section of a study: whether blocks stand, move or fall, how sure that is, why models differ, what is next."""
+
+import numpy as np
+
+from blockshake.pages.blocks import Box, Figure, Heading, Items, Section, Table, Text
+from blockshake.pages.drawing import svg_of
+from blockshake.pages.rows import face_markers
+from blockshake.pages.wording import (
+    MISSING,
+    SQUARED,
+    count_words,
+    given,
+    listed,
+    model_label,
+    number,
+    parameter_label,
+    sentence_case,
+    share_words,
+)
+from blockshake.statistics.intervals import share_interval
+from blockshake.study.ensembles.coverage import is_likely
+from blockshake.study.report.answer_figure import plot_answer
+from blockshake.study.report.case_outcomes import (
+    STILL,
+    models_apart,
+    most_telling,
+    outcomes,
+    shares_at_impacts,
+)
+from blockshake.study.report.open_questions import ALIKE, MOST, next_steps, unknown
+
+
+def answer(content):
+    """Verdict, three numbers, structure and displacement, a line a case, differences, gaps and next steps: a page."""
+    found = {case.name: ended for case in content.cases.values() if (ended := outcomes(case))}
+    if not found:
+        return Section(
+            "Answer", "answer", (*_synthetic(content), Text("No sample of any case has a result."))
+        )
+    shown = content.cases[most_telling(found)]
+    blocks = [
+        Text(_asked(content)),
+        Box(_verdict(content, found), _facts(content, found, shown)),
+        *_synthetic(content),
+        _figure(content, found, shown),
+        _lines(content, found),
+    ]
+    said = [*_why(content, found), *_measured(content, found)]
+    said += [
+        f"Half of the samples of {name} fall below {number(float(one['median']), 2)} times its motion (fragility)."
+        for name, one in content.fragility.items()
+        if np.isfinite(one["median"])
+    ]
+    for title, key, sentences in (
+        ("Models and tests beside each other", "beside", said),
+        ("Not known", "not-known", unknown(content)[:MOST]),
+        ("Next", "next", next_steps(content, found)[:MOST]),
+    ):
+        blocks += [Heading(title, key), Items(tuple(sentences))] if sentences else []
+    return Section("Answer", "answer", tuple(blocks))
+
+
+def _asked(content):
+    """The cases, models and samples in a sentence."""
+    by_motion = {}
+    for case in content.cases.values():
+        under = f"under {_under(content, case)} for {given(case.settings['duration'])} s"
+        by_motion.setdefault(under, []).append(case.structure.file.name)
+    cases = "; ".join(f"{listed(names)} {under}" for under, names in by_motion.items())
+    labels = [model_label(model) for model in content.study["models"]]
+    sizes = [
+        one.samples.sizes["sample"] for case in content.cases.values() for one in case.responses.values()
+    ]
+    few, many = min(sizes), max(sizes)
+    samples = count_words(many, "sample") if few == many else f"{few} to {many} samples"
+    used = [name for name in content.distributions if content.users(name)]
+    kinds = dict.fromkeys(parameter_label(name).split(" of ")[0].split(",")[0] for name in used)
+    uncertain = f"Uncertain: {listed(list(kinds))}." if kinds else ""
+    return f"Asked: {cases}, by {listed(labels)}, {samples} each. {uncertain}".rstrip()
+
+
+def _under(content, case):
+    """Motion of a case with its scale and peak."""
+    peak = f"{number(content.peak_acceleration(case))} m/s{SQUARED}"
+    return f"{case.motion} x {given(case.settings['scale'])} ({peak})"
+
+
+def _verdict(content, found):
+    """Which cases stand, which may collapse and which do, in a sentence."""
+    sides = {"stand": [], "may": [], "fall": []}
+    for name, ended in found.items():
+        shares = [one.share for one in ended.values()]
+        sides["stand" if not any(shares) else "fall" if min(shares) == 1.0 else "may"].append(name)
+
+    def named(names):
+        cases = [content.cases[name] for name in names]
+        return listed([f"{case.structure.file.name} under {_under(content, case)}" for case in cases])
+
+    def runs(names):
+        return sum(one.counted for name in names for one in found[name].values())
+
+    words = []
+    if names := sides["stand"]:
+        verb = "stands" if len(names) == 1 else "stand"
+        words.append(
+            f"{named(names)} {verb}: none of {count_words(runs(names), 'run')} by {_by(found, names)} collapses"
+        )
+    for name in sides["may"]:
+        by_share = {}
+        for model, one in found[name].items():
+            by_share.setdefault(share_words(one.collapsed, one.counted), []).append(model_label(model))
+        by = listed([f"{share} by {listed(labels)}" for share, labels in by_share.items()])
+        words.append(f"{named([name])} may collapse: of the runs, {by} do")
+    if names := sides["fall"]:
+        verb = "collapses" if len(names) == 1 else "collapse"
+        words.append(f"{named(names)} {verb}: so do all {runs(names)} runs by {_by(found, names)}")
+    return ". ".join(words) + "."
+
+
+def _by(found, names):
+    """Models of cases in words."""
+    models = list(dict.fromkeys(model for name in names for model in found[name]))
+    return (
+        model_label(models[0])
+        if len(models) == 1
+        else "both models"
+        if len(models) == 2
+        else f"{len(models)} models"
+    )
+
+
+def _facts(content, found, shown):
+    """The three numbers of the box: farthest block, least margin, collapses."""
+    ended, under = (
+        found[shown.name],
+        f"{shown.name}, until a fall"
+        if any(one.collapsed for one in found[shown.name].values())
+        else shown.name,
+    )
+    far = max(ended.values(), key=lambda one: one.peak)
+    near = min(ended.values(), key=lambda one: one.margin if np.isfinite(one.margin) else np.inf)
+    marked, blocks = len(face_markers(shown.structure)), int((~shown.structure.driven).sum())
+    every = [(name, model) for name in found for model in found[name]]
+    worst, by = max(every, key=lambda one: found[one[0]][one[1]].share)
+    fell = found[worst][by]
+    if fell.collapsed:
+        lower, upper = map(_whole, share_interval(fell.collapsed, fell.counted))
+        falls = (
+            f"{fell.collapsed} of {fell.counted}",
+            f"{worst} by {model_label(by)}; probability {lower} to {upper} %",
+        )
+    else:
+        few = min(found[name][model].counted for name, model in every)
+        runs = sum(found[name][model].counted for name, model in every)
+        upper = _whole(share_interval(0, few)[1])
+        falls = (
+            f"none of {runs}",
+            f"probability below {upper} % in each case by each model, {few} samples or more",
+        )
+    return (
+        (
+            "Farthest from its place on the slab",
+            f"{_range(ended, 'peak', _length)} mm",
+            f"{far.block}; {under}; medians{_ends(ended, 'peak')}; {share_words(marked, blocks)} blocks have markers",
+        ),
+        (
+            "Least margin against overturning",
+            f"{_range(ended, 'margin', _whole)} %" if near.over else MISSING,
+            f"above {near.over}; {under}; medians{_ends(ended, 'margin')}; at rest 100 %, weight over the edge 0 %",
+        ),
+        (
+            "Samples that collapse",
+            falls[0],
+            f"{falls[1]} (95 % limits)",
+        ),
+    )
+
+
+def _range(ended, name, show):
+    values = [getattr(one, name) for one in ended.values() if np.isfinite(getattr(one, name))]
+    return " to ".join(dict.fromkeys(show(end) for end in (min(values), max(values))))
+
+
+def _ends(ended, name):
+    """Models of the least and of the largest figure, where they differ."""
+    known = {model: value for model, one in ended.items() if np.isfinite(value := getattr(one, name))}
+    ends = [model_label(pick(known, key=known.get)) for pick in (min, max)] if len(known) > 1 else []
+    return f" by {' to '.join(ends)}" if ends else ""
+
+
+def _length(value):
+    """A length [m] in mm, whole from 10 mm on."""
+    return f"{1e3 * value:.0f}" if value >= 0.00995 else f"{1e3 * value:.1f}"
+
+
+def _whole(share):
+    return f"{100.0 * share:.0f}"
+
+
+def _sure(ended):
+    """Limits of the probability of a collapse by every model, models of the same limits together."""
+    by_limits = {}
+    for model, one in ended.items():
+        lower, upper = map(_whole, share_interval(one.collapsed, one.counted))
+        words = f"below {upper} %" if not one.collapsed else f"{lower} to {upper} %"
+        by_limits.setdefault(words, []).append(model_label(model))
+    if len(by_limits) == 1:
+        return f"{next(iter(by_limits))}{' by each model' if len(ended) > 1 else ''}"
+    return ", ".join(f"{words} by {listed(models)}" for words, models in by_limits.items())
+
+
+def _lines(content, found):
+    """A row a case: what its blocks do by every model, and how sure that is."""
+    models = [model for model in content.study["models"] if any(model in ended for ended in found.values())]
+    rows = [
+        (
+            f"{name}: {_under(content, content.cases[name])}",
+            *(_done(ended[model]) if model in ended else MISSING for model in models),
+            _sure(ended),
+        )
+        for name, ended in found.items()
+    ]
+    return Table(
+        "What the blocks do. Moves by: displacement along x from its place on the slab, largest in time, of the block "
+        "that moves farthest; median of the samples, smallest and largest in brackets. Left: at the end.",
+        ("Case", *map(model_label, models), "Collapse, 95 %"), tuple(rows), "l" * (len(models) + 2),
+        (5, *[6] * len(models), 4),
+    )  # fmt: skip
+
+
+def _done(one):
+    if one.collapsed:
+        return f"collapses in {share_words(one.collapsed, one.counted)} samples"
+    if one.most < STILL:
+        return f"stands, unmoved ({one.counted} samples)"
+    left = f", {_length(one.end)} mm left" if np.isfinite(one.end) else ""
+    spread = f"{_length(one.least)} to {_length(one.most)}" if one.counted > 1 else "1 sample"
+    return f"stands; {one.block} moves by {_length(one.peak)} mm ({spread}){left}"
+
+
+def _figure(content, found, shown):
+    one = max(found[shown.name].values(), key=lambda ended: ended.peak)
+    structures = {case.settings["structure"]: case.structure for case in content.cases.values()}
+    curve = f"; dashed: {shown.curve_word}" if shown.measured is not None else ""
+    return Figure(
+        f"Left: {listed([structure.file.name for structure in structures.values()])}. Right: {one.block} (red) under "
+        f"{_under(content, shown)}, displacement along x from its place on the slab: medians of the samples, and bands "
+        f"from the smallest to the largest{curve}.",
+        svg_of(plot_answer, list(structures.values()), shown, one.marker),
+    )
+
+
+def _why(content, found):
+    """Why the models differ in the case in which they differ most, by what their runs did."""
+    apart = [one for name in found for one in models_apart(content.cases[name], found[name])]
+    if not apart:
+        several = any(len(ended) > 1 for ended in found.values())
+        return ["The models do not differ beyond the limits of their samples."] if several else []
+    _, _, name, *models = max(apart)
+    case, (near, far) = content.cases[name], map(model_label, models)
+    words = [f"under {name} {far} moves the blocks farther than {near}"]
+    if impacts := shares_at_impacts(case, models):
+        joint, (less, more, plastic) = impacts
+        words.append(
+            f"at {joint}, the joint that opens most, impacts keep {less:.2f} of the spin by {near} and {more:.2f} by "
+            f"{far}; all above it, turning as one and struck at the other edge alone, keeps {plastic:.2f} (Housner)"
+        )
+        words.append(
+            "impacts do not tell the models apart"
+            if abs(more - less) < ALIKE
+            else f"impacts explain a larger motion by {far}, which loses less"
+            if more > less
+            else f"impacts do not explain it: {far} loses more"
+        )
+    for figure, noun in (("joint_uplift", "opening"), ("joint_slip", "slip")):
+        largest = [
+            case.responses[model].envelope[figure].sel(quantile=0.5).dropna("joint") for model in models
+        ]
+        if all(values.size for values in largest):
+            sizes = [
+                f"{_length(float(values.max()))} mm by {label} ({values['joint'].values[values.to_numpy().argmax()]})"
+                for values, label in zip(largest, (near, far), strict=True)
+            ]
+            words.append(f"the largest {noun} is {' and '.join(sizes)}")
+    return [" ".join(map(sentence_case, words))]
+
+
+def _measured(content, found):
+    """Measured peaks, and of which samples the measured curve may be one more: a sentence, or none."""
+    said, words = [], {}
+    for name, ended in found.items():
+        case = content.cases[name]
+        one = max(ended.values(), key=lambda end: end.peak)
+        if case.measured is None or one.marker not in case.measured["marker"].values:
+            continue
+        peak = float(case.measured["peak"].sel(frame="slab", marker=one.marker))
+        fits = {True: [], False: []}
+        for model in ended:
+            comparison = case.responses[model].comparison
+            chance = float(comparison["curve_probability"].sel(marker=one.marker))
+            if np.isfinite(chance):
+                fits[is_likely(chance, int(comparison.attrs["counted"]))].append(model_label(model))
+        like = [
+            f"{word} the samples of {listed(fits[at])}"
+            for word, at in (("like", True), ("unlike", False))
+            if fits[at]
+        ]
+        words[case.curve_word] = None
+        said.append(f"{name}, {one.block} moves by {', '.join([f'{_length(peak)} mm', *like])}")
+    return [f"{sentence_case(' and '.join(words))[:-1]}: {'; '.join(said)}."] if said else []
+
+
+def _synthetic(content):
+    """Remarks on curves and motions that nobody measured."""
+    cases = content.cases.values()
+    tests = [case.name for case in cases if case.synthetic]
+    motions = sorted({case.motion for case in cases if content.motions[case.motion].attrs.get("synthetic")})
+    if tests:
+        yield Text(
+            f"The measured curves of {', '.join(tests)} are SYNTHETIC: virtual tests, runs of a solver of this program "
+            "seen through noisy markers, with an effect that the models may lack. They tell nothing about reality.",
+            strong=True,
+        )
+    if motions:
+        yield Text(f"The ground motions are synthetic, not recorded: {', '.join(motions)}.", strong=True)
