@@ -10,7 +10,7 @@ from blockshake.files import PACKAGE
 FLOORS = [
     ["caches", "errors", "interrupts"],
     ["files", "paths", "quantities", "working_folder"],
-    ["validation", "log", "sources", "store"],
+    ["validation", "log", "sources", "store", "run_workflow"],
     ["tables", "statistics"],
     ["jit"],
     ["geometry"],
@@ -20,7 +20,7 @@ FLOORS = [
     ["effects", "pages"],
     ["study", "views"],
     ["diagnosis", "virtual"],
-    ["run_diagnosis", "own_files"],
+    ["run_diagnosis", "run_study", "own_files"],
     ["cost"],
     ["cli"],
 ]

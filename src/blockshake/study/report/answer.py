@@ -45,14 +45,15 @@ def answer(content):
         _figure(content, found, shown),
         _lines(content, found),
     ]
-    said = [*_why(content, found), *_measured(content, found)]
+    compared = _measured(content, found)
+    said = [*_why(content, found), *compared]
     said += [
         f"Half of the samples of {name} fall below {number(float(one['median']), 2)} times its motion (fragility)."
         for name, one in content.fragility.items()
         if np.isfinite(one["median"])
     ]
     for title, key, sentences in (
-        ("Models and tests beside each other", "beside", said),
+        ("Why the models differ" if not compared else "Models and tests beside each other", "beside", said),
         ("Not known", "not-known", unknown(content)[:MOST]),
         ("Next", "next", next_steps(content, found)[:MOST]),
     ):
@@ -106,11 +107,13 @@ def _verdict(content, found):
             f"{named(names)} {verb}: none of {count_words(runs(names), 'run')} by {_by(found, names)} collapses"
         )
     for name in sides["may"]:
-        by_share = {}
-        for model, one in found[name].items():
-            by_share.setdefault(share_words(one.collapsed, one.counted), []).append(model_label(model))
-        by = listed([f"{share} by {listed(labels)}" for share, labels in by_share.items()])
-        words.append(f"{named([name])} may collapse: of the runs, {by} do")
+        by = [
+            f"{share_words(one.collapsed, one.counted)} by {model_label(model)}"
+            for model, one in found[name].items()
+            if one.collapsed
+        ]
+        others = "" if len(by) == len(found[name]) else ", and none by the others"
+        words.append(f"{named([name])} may collapse: of the runs, {listed(by)} do{others}")
     if names := sides["fall"]:
         verb = "collapses" if len(names) == 1 else "collapse"
         words.append(f"{named(names)} {verb}: so do all {runs(names)} runs by {_by(found, names)}")
@@ -144,19 +147,11 @@ def _facts(content, found, shown):
     worst, by = max(every, key=lambda one: found[one[0]][one[1]].share)
     fell = found[worst][by]
     if fell.collapsed:
-        lower, upper = map(_whole, share_interval(fell.collapsed, fell.counted))
-        falls = (
-            f"{fell.collapsed} of {fell.counted}",
-            f"{worst} by {model_label(by)}; probability {lower} to {upper} %",
-        )
+        of, where = f"{fell.collapsed} of {fell.counted}", f"{worst} by {model_label(by)}"
     else:
-        few = min(found[name][model].counted for name, model in every)
-        runs = sum(found[name][model].counted for name, model in every)
-        upper = _whole(share_interval(0, few)[1])
-        falls = (
-            f"none of {runs}",
-            f"probability below {upper} % in each case by each model, {few} samples or more",
-        )
+        fell = min((found[name][model] for name, model in every), key=lambda one: one.counted)
+        of = f"none of {sum(found[name][model].counted for name, model in every)}"
+        where = "in each case by each model"
     return (
         (
             "Farthest from its place on the slab",
@@ -170,8 +165,8 @@ def _facts(content, found, shown):
         ),
         (
             "Samples that collapse",
-            falls[0],
-            f"{falls[1]} (95 % limits)",
+            of,
+            f"{where}: probability {_limits(fell.collapsed, fell.counted)}, 95 % limits",
         ),
     )
 
@@ -197,18 +192,6 @@ def _whole(share):
     return f"{100.0 * share:.0f}"
 
 
-def _sure(ended):
-    """Limits of the probability of a collapse by every model, models of the same limits together."""
-    by_limits = {}
-    for model, one in ended.items():
-        lower, upper = map(_whole, share_interval(one.collapsed, one.counted))
-        words = f"below {upper} %" if not one.collapsed else f"{lower} to {upper} %"
-        by_limits.setdefault(words, []).append(model_label(model))
-    if len(by_limits) == 1:
-        return f"{next(iter(by_limits))}{' by each model' if len(ended) > 1 else ''}"
-    return ", ".join(f"{words} by {listed(models)}" for words, models in by_limits.items())
-
-
 def _lines(content, found):
     """A row a case: what its blocks do by every model, and how sure that is."""
     models = [model for model in content.study["models"] if any(model in ended for ended in found.values())]
@@ -216,26 +199,32 @@ def _lines(content, found):
         (
             f"{name}: {_under(content, content.cases[name])}",
             *(_done(ended[model]) if model in ended else MISSING for model in models),
-            _sure(ended),
         )
         for name, ended in found.items()
     ]
     return Table(
-        "What the blocks do. Moves by: displacement along x from its place on the slab, largest in time, of the block "
-        "that moves farthest; median of the samples, smallest and largest in brackets. Left: at the end.",
-        ("Case", *map(model_label, models), "Collapse, 95 %"), tuple(rows), "l" * (len(models) + 2),
-        (5, *[6] * len(models), 4),
+        "What the blocks do. Moves by: largest displacement along x from its place on the slab, of the block that "
+        "moves farthest; median of the samples, smallest and largest in brackets. Collapse: limits of 95 % of its "
+        "probability.",
+        ("Case", *map(model_label, models)), tuple(rows), "l" * (len(models) + 1), (3, *[4] * len(models)),
     )  # fmt: skip
 
 
 def _done(one):
+    sure = _limits(one.collapsed, one.counted)
     if one.collapsed:
-        return f"collapses in {share_words(one.collapsed, one.counted)} samples"
+        return f"{share_words(one.collapsed, one.counted)} samples collapse: {sure}"
     if one.most < STILL:
-        return f"stands, unmoved ({one.counted} samples)"
+        return f"stands, unmoved; collapse {sure}"
     left = f", {_length(one.end)} mm left" if np.isfinite(one.end) else ""
     spread = f"{_length(one.least)} to {_length(one.most)}" if one.counted > 1 else "1 sample"
-    return f"stands; {one.block} moves by {_length(one.peak)} mm ({spread}){left}"
+    return f"stands; {one.block} moves by {_length(one.peak)} mm ({spread}){left}; collapse {sure}"
+
+
+def _limits(collapsed, counted):
+    """Limits of the probability of a collapse, in words."""
+    lower, upper = map(_whole, share_interval(collapsed, counted))
+    return f"{lower} to {upper} %" if collapsed else f"below {upper} %"
 
 
 def _figure(content, found, shown):
@@ -300,26 +289,22 @@ def _measured(content, found):
             chance = float(comparison["curve_probability"].sel(marker=one.marker))
             if np.isfinite(chance):
                 fits[is_likely(chance, int(comparison.attrs["counted"]))].append(model_label(model))
-        like = [
-            f"{word} the samples of {listed(fits[at])}"
-            for word, at in (("like", True), ("unlike", False))
-            if fits[at]
-        ]
+        like = [f"{word} {listed(fits[at])}" for word, at in (("like", True), ("unlike", False)) if fits[at]]
         words[case.curve_word] = None
         said.append(f"{name}, {one.block} moves by {', '.join([f'{_length(peak)} mm', *like])}")
     return [f"{sentence_case(' and '.join(words))[:-1]}: {'; '.join(said)}."] if said else []
 
 
 def _synthetic(content):
-    """Remarks on curves and motions that nobody measured."""
-    cases = content.cases.values()
+    """Remark on curves and motions that nobody measured."""
+    cases, words = content.cases.values(), []
     tests = [case.name for case in cases if case.synthetic]
     motions = sorted({case.motion for case in cases if content.motions[case.motion].attrs.get("synthetic")})
-    if tests:
-        yield Text(
-            f"The measured curves of {', '.join(tests)} are SYNTHETIC: virtual tests, runs of a solver of this program "
-            "seen through noisy markers, with an effect that the models may lack. They tell nothing about reality.",
-            strong=True,
-        )
     if motions:
-        yield Text(f"The ground motions are synthetic, not recorded: {', '.join(motions)}.", strong=True)
+        words.append(f"The ground motions are synthetic, not recorded: {', '.join(motions)}.")
+    if tests:
+        words.append(
+            f"The measured curves of {', '.join(tests)} are SYNTHETIC: runs of a solver of this program seen through "
+            "noisy markers, with an effect that the models may lack. They tell nothing about reality."
+        )
+    return [Text(" ".join(words), strong=True)] if words else []

@@ -7,7 +7,7 @@ from blockshake.pages.scene.structure_picture import draw_blocks
 from blockshake.pages.wording import model_label
 
 _COLORS = (BLUE, ORANGE, GREEN, RED)
-_HEIGHT = 0.058  # m of paper
+_HEIGHT = 0.046  # m of paper
 _CURVES = 2.2  # width of the curves over that of the structures
 
 
@@ -48,8 +48,12 @@ def plot_answer(structures, case, marker):
     if case.measured is not None and marker in case.measured["marker"].values:
         measured = case.measured["displacement"].sel(frame="slab", marker=marker)
         curves.plot(case.measured["time"], 1e3 * measured, label=case.curve_word, **MEASURED)
-    curves.set(
-        xlabel="time [s]", ylabel="from its place on the slab [mm]", xlim=(0.0, case.settings["duration"])
+    curves.set(xlabel="time [s]", ylabel="from its place [mm]", xlim=(0.0, case.settings["duration"]))
+    right.legend(
+        *curves.get_legend_handles_labels(),
+        loc="outside upper right",
+        ncols=5,
+        fontsize=6.0,
+        columnspacing=1.0,
     )
-    right.legend(*curves.get_legend_handles_labels(), loc="outside upper center", ncols=5)
     return figure

@@ -2,8 +2,6 @@
 
 from itertools import chain, count
 
-import numpy as np
-
 from blockshake.pages.rows import face_markers
 from blockshake.pages.wording import listed, model_label, number, parameter_label, percent, quantile_percent
 from blockshake.statistics.intervals import samples_needed, share_interval
@@ -11,7 +9,7 @@ from blockshake.study.calibration.calibration import ALL
 from blockshake.study.report.case_outcomes import models_apart, shares_at_impacts
 from blockshake.study.sensitivity.findings import influences, is_known
 
-MOST = 4  # sentences on the first page
+MOST = 3  # sentences on the first page
 ALIKE = 0.05  # of shares of the spin that impacts keep
 _UPPER = 0.95  # quantile that stands for a large peak
 _RARE = 0.05  # probability of a collapse that more samples are to exclude
