@@ -5,7 +5,7 @@ import pytest
 
 from blockshake.simulation.models import MODELS
 from blockshake.study.comparison.section import case_words, models
-from blockshake.study.comparison.tables import block_tables, numerics_table, pairs_table
+from blockshake.study.comparison.tables import block_tables, pairs_table
 from blockshake.study.report.content import load_content
 
 FIRST, LAST = "configuration-1", "configuration-4"
@@ -48,7 +48,6 @@ def test_one_sample_has_medians_and_no_width(content):
 
 def test_every_pair_and_every_model_has_a_row(content):
     assert len(pairs_table(content).rows) == 2 * 6
-    assert len(numerics_table(content).rows) == 2 * 4
     rows = {row[:2]: row for row in pairs_table(content).rows}
     assert rows[LAST, "LS-DEM and NSCD elastic"][2:4] == ("none", "none")
 
