@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from blockshake import run_diagnosis
+from blockshake import run_diagnosis, run_workflow
 from blockshake.cli import main
 from blockshake.diagnosis.verdict.ladder import NOTHING, ONE_OF, PROBABLE, UNKNOWN
 from blockshake.errors import InputError
@@ -86,13 +86,24 @@ def test_the_workflow_ends_with_the_diagnosis(tmp_path, monkeypatch):
     """A diagnosis that is killed leaves no workflow behind, which would hold the folder."""
     given = {}
 
-    def run(_, environment):
-        given.update(environment)
-        return 1
+    class Stopped:
+        stdout = None
+
+        def __init__(self, command, env, **_):
+            given.update(env)
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *_):
+            return None
+
+        def wait(self):
+            return 1
 
     monkeypatch.setattr(run_diagnosis, "HOME", tmp_path)
-    monkeypatch.setattr(run_diagnosis, "run_workflow", run)
-    with pytest.raises(run_diagnosis.WorkflowError, match="the workflow stopped"):
+    monkeypatch.setattr(run_workflow.subprocess, "Popen", Stopped)
+    with pytest.raises(run_workflow.WorkflowError, match="the workflow stopped"):
         run_diagnosis.diagnose(CAMPAIGN, tmp_path / "new" / "output")
     assert not (tmp_path / "new").exists()
     assert this_command().items() <= given.items()

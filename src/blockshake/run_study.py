@@ -58,13 +58,13 @@ def run_study(file, output=None, cores=None, case=None, say=print):
     names = [one.name for one in config.cases]
     if case is not None and case not in names:
         raise InputError(file, "--case", f"expected one of {', '.join(names)}, not '{case}'")
-    folder, path = Path.cwd(), Path(file).resolve()
-    if output is not None and Path(output).resolve() != folder:
-        folder = Path(output).resolve()
+    folder, path = Path(output or ".").resolve(), Path(file).resolve()
+    elsewhere = folder != Path.cwd()
+    if elsewhere:
         path = check_output(folder / f"{config.name}.yaml")
         folder.mkdir(parents=True, exist_ok=True)
     os.close(hold(folder))  # the workflow holds it again
-    if path.parent == folder and output is not None:
+    if elsewhere:
         moved = yaml.safe_dump(_seen_from(folder, load_yaml(file)), sort_keys=False, allow_unicode=True)
         write_text(path, moved)
     report = folder / "reports" / "-".join(filter(None, (config.name, case)))

@@ -36,6 +36,7 @@ from blockshake.pages.blocks import (
 )
 from blockshake.pages.drawing import new_figure, svg_of
 from blockshake.pages.writing import write_html, write_pdf
+from blockshake.run_workflow import WorkflowError
 from blockshake.simulation.simulate import simulate
 from blockshake.study.config import check_config
 
@@ -206,9 +207,9 @@ def test_a_diagnosis_is_told_the_very_folder(odd, tmp_path, monkeypatch):
 
     given = []
 
-    def taken(command, _):
+    def taken(command):
         given.extend(command)
-        return 1
+        raise WorkflowError(1)
 
     monkeypatch.setattr(run_diagnosis, "run_workflow", taken)
     monkeypatch.setattr("blockshake.diagnosis.nominal.plan.plan_diagnosis", lambda *_: None)
