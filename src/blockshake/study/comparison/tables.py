@@ -12,7 +12,7 @@ from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
 
 
 def block_tables(case):
-    """Peak, residual and width of the envelope of every block by every model, a table each."""
+    """Peak and residual of every block by every model, a table each."""
     found = case.differences
     at_end = f"mean over the last {given(RESIDUAL_WINDOW)} s of the window"
     limits = (
@@ -21,10 +21,6 @@ def block_tables(case):
     captions = {
         "peak": f"peak displacement along x relative to the slab [mm], median over the n samples. {limits}",
         "residual": f"residual displacement ({at_end}) relative to the slab [mm], median over the samples. {limits}",
-        "width": "width of the envelope [mm]: mean difference of two samples, over all pairs and times. The width does "
-        "not grow with the number of samples, as the bounds in the figures do. In brackets bootstrap limits of 95 %, "
-        f"which hold in 89 to 93 of 100 cases; none with fewer than {SURE_FROM} samples, and no width with fewer than "
-        "three.",
     }
     return [_block_table(case, found, name, f"{case.name}: {words}") for name, words in captions.items()]
 
