@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.pages.blocks import Figure, Heading, Section, Table, Text
 from blockshake.pages.drawing import svg_of
-from blockshake.pages.rows import face_markers, main_bodies
+from blockshake.pages.rows import face_markers
 from blockshake.pages.wording import (
     SHOWN_QUANTILES,
     given,
@@ -40,23 +40,17 @@ def responses(content):
 
 def _response(case, motion):
     markers = face_markers(case.structure)
-    main = main_bodies(case.structure, markers)
     envelopes = {model: one.envelope for model, one in case.responses.items()}
     blocks, marked = int((~case.structure.driven).sum()), len(markers)
     every = "every block" if marked == blocks else f"the {marked} of {blocks} blocks that have a marker"
-    some = "" if len(main) == marked else "; others are in the figure before"
 
-    def figure(bodies, frame, caption):
-        chosen = [markers[body] for body in bodies]
-        shown = envelopes, case.measured, chosen, bodies, frame, case.synthetic
+    def figure(frame, caption):
+        shown = envelopes, case.measured, list(markers.values()), list(markers), frame, case.synthetic
         return Figure(
             caption, svg_of(plot_displacements, *shown), interactive=interactive_displacements(*shown)
         )
 
-    def measured_beside():
-        caption = f"{case.name}: displacement in the inertial frame, in which the coverage is read{some}."
-        return [figure(main, "inertial", caption), coverage_table(case)]
-
+    beside = f"{case.name}: displacement in the inertial frame, in which the coverage is read."
     return [
         Heading(case.title, f"response-{case.name}"),
         Text(
@@ -66,11 +60,11 @@ def _response(case, motion):
         *_early_end(case, motion),
         *_gaps(case),
         *_lines(case, markers.values()),
-        figure(list(markers), "slab", f"{case.name}: displacement relative to the slab's marker, {every}."),
+        figure("slab", f"{case.name}: displacement relative to the slab's marker, {every}."),
         *_moving(case),
         *block_tables(case),
         *joint_blocks(case),
-        *([] if case.measured is None else measured_beside()),
+        *([] if case.measured is None else [figure("inertial", beside), coverage_table(case)]),
     ]
 
 
