@@ -53,11 +53,12 @@ def test_the_page_says_what_was_asked_first(content):
 
 def test_what_stands_and_what_may_collapse_is_that_of_the_samples(content):
     box, *_ = parts(content)
-    stands, may = box.sentence.split(". configuration-4")
-    assert stands.startswith(FIRST)
-    assert stands.endswith("stands: none of 28 runs by 4 models collapses")
+    stands, may = box.sentence.split(". configuration-4 may collapse under ")
+    assert stands.startswith(f"{FIRST} stands under basso-tirreno x 2 (2.47 m/s")
+    upper = 100.0 * share_interval(0, 4)[1]  # of the model with the fewest samples
+    assert f"none of 28 runs by 4 models collapses; so many samples leave up to {upper:.0f} % for" in stands
     # one collapsed and one failed of six
-    assert may.endswith("may collapse: of the runs, 1 of 5 by NSCD rigid do, and none by the others.")
+    assert may.endswith(": of the runs, 1 of 5 by NSCD rigid do, and none by the others.")
     lower, upper = (100.0 * one for one in share_interval(1, 5))
     assert box.facts[2][1:] == (
         "1 of 5",
@@ -70,7 +71,8 @@ def test_a_study_whose_samples_all_fall_says_so(content):
         for model, one in case.responses.items():
             content = with_statuses(content, name, model, ["collapsed"] * one.samples.sizes["sample"])
     box, table, _ = parts(content)
-    assert box.sentence.endswith("collapse: so do all 48 runs by 4 models.")
+    assert box.sentence.startswith(f"{FIRST} and {FOURTH} collapse under basso-tirreno x 2 (2.47 m/s")
+    assert box.sentence.endswith(": so do all 48 runs by 4 models.")
     assert table.rows[0][1].startswith("all 10 samples collapse: ")
 
 

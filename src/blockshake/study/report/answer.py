@@ -63,11 +63,11 @@ def answer(content):
 
 def _asked(content):
     """The cases, models and samples in a sentence."""
-    by_motion = {}
-    for case in content.cases.values():
-        under = f"under {_under(content, case)} for {given(case.settings['duration'])} s"
-        by_motion.setdefault(under, []).append(case.structure.file.name)
-    cases = "; ".join(f"{listed(names)} {under}" for under, names in by_motion.items())
+    cases = "; ".join(
+        f"{listed(names)} under {listed(motions)}" for names, motions in _grouped(content, content.cases)
+    )
+    seconds = dict.fromkeys(f"{given(case.settings['duration'])} s" for case in content.cases.values())
+    cases += f", {' or '.join(seconds)}"
     labels = [model_label(model) for model in content.study["models"]]
     sizes = [
         one.samples.sizes["sample"] for case in content.cases.values() for one in case.responses.values()
@@ -78,6 +78,16 @@ def _asked(content):
     kinds = dict.fromkeys(parameter_label(name).split(" of ")[0].split(",")[0] for name in used)
     uncertain = f"Uncertain: {listed(list(kinds))}." if kinds else ""
     return f"Asked: {cases}, by {listed(labels)}, {samples} each. {uncertain}".rstrip()
+
+
+def _grouped(content, names):
+    """Structures of some cases with their motions, those of the same motions together: pairs of lists of words."""
+    motions, alike = {}, {}
+    for case in map(content.cases.get, names):
+        motions.setdefault(case.structure.file.name, []).append(_under(content, case))
+    for structure, under in motions.items():
+        alike.setdefault(tuple(under), []).append(structure)
+    return [(structures, list(under)) for under, structures in alike.items()]
 
 
 def _under(content, case):
@@ -93,18 +103,23 @@ def _verdict(content, found):
         shares = [one.share for one in ended.values()]
         sides["stand" if not any(shares) else "fall" if min(shares) == 1.0 else "may"].append(name)
 
-    def named(names):
-        cases = [content.cases[name] for name in names]
-        return listed([f"{case.structure.file.name} under {_under(content, case)}" for case in cases])
+    def named(names, verb):
+        groups = _grouped(content, names)
+        return "; ".join(
+            f"{listed(structures)} {verb}{'s' if len(structures) == 1 and verb != 'may collapse' else ''} under "
+            f"{listed(motions)}"
+            for structures, motions in groups
+        )
 
     def runs(names):
         return sum(one.counted for name in names for one in found[name].values())
 
     words = []
     if names := sides["stand"]:
-        verb = "stands" if len(names) == 1 else "stand"
+        upper = max(share_interval(0, one.counted)[1] for name in names for one in found[name].values())
         words.append(
-            f"{named(names)} {verb}: none of {count_words(runs(names), 'run')} by {_by(found, names)} collapses"
+            f"{named(names, 'stand')}: none of {count_words(runs(names), 'run')} by {_by(found, names)} collapses; so "
+            f"many samples leave up to {_whole(upper)} % for a collapse"
         )
     for name in sides["may"]:
         by = [
@@ -113,10 +128,9 @@ def _verdict(content, found):
             if one.collapsed
         ]
         others = "" if len(by) == len(found[name]) else ", and none by the others"
-        words.append(f"{named([name])} may collapse: of the runs, {listed(by)} do{others}")
+        words.append(f"{named([name], 'may collapse')}: of the runs, {listed(by)} do{others}")
     if names := sides["fall"]:
-        verb = "collapses" if len(names) == 1 else "collapse"
-        words.append(f"{named(names)} {verb}: so do all {runs(names)} runs by {_by(found, names)}")
+        words.append(f"{named(names, 'collapse')}: so do all {runs(names)} runs by {_by(found, names)}")
     return ". ".join(words) + "."
 
 
@@ -203,7 +217,7 @@ def _lines(content, found):
         for name, ended in found.items()
     ]
     return Table(
-        "What the blocks do. Moves by: largest displacement along x from its place on the slab, of the block that "
+        "Verdict of every case. Moves by: largest displacement along x from its place on the slab, of the block that "
         "moves farthest; median of the samples, smallest and largest in brackets. Collapse: limits of 95 % of its "
         "probability.",
         ("Case", *map(model_label, models)), tuple(rows), "l" * (len(models) + 1), (3, *[4] * len(models)),

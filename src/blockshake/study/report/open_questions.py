@@ -107,8 +107,8 @@ def unknown(content):
         sentences.append(f"How far blocks that fell would have moved, peaks are lower limits: {listed(cut)}.")
     if chaotic := _chaotic(cases):
         sentences.append(
-            "Single histories after the time at which twins, alike to one part in a million of the motion or run at "
-            f"half the time step, are told apart: {'; '.join(chaotic)}. Bounds and quantiles remain."
+            f"Single runs after {'; '.join(chaotic)}: from then on a change of the motion by a millionth, or half the "
+            "time step, tells a run from its twin. Medians and bands remain."
         )
     unanswered = [
         parameter_label(name)
