@@ -230,7 +230,7 @@ def _done(one):
         return f"{share_words(one.collapsed, one.counted)} samples collapse: {sure}"
     if one.most < STILL:
         return f"stands, unmoved; collapse {sure}"
-    left = f", {_length(one.end)} mm left" if np.isfinite(one.end) else ""
+    left = f", {_length(one.end)} mm left" if np.isfinite(one.end) else ", still moving at the end"
     spread = f"{_length(one.least)} to {_length(one.most)}" if one.counted > 1 else "1 sample"
     return f"stands; {one.block} moves by {_length(one.peak)} mm ({spread}){left}; collapse {sure}"
 

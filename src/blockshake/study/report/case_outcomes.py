@@ -13,6 +13,7 @@ from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.ensembles.outcomes import count_outcomes
 
 STILL = 1e-3  # m, below which a block counts as unmoved
+_LAST, _RESTLESS = 1.0, 0.05  # s of a window's end, and share of the peak by which a block still moves then
 _FARTHER = 1.25  # times, from which on medians without limits count as different
 
 
@@ -27,7 +28,7 @@ class Outcome(NamedTuple):
         The block that moves farthest, of those with markers.
     peak, least, most, end : float
         Its largest displacement along x from its place on the slab: median, smallest and largest of the samples, and
-        the median of what is left at the end [m].
+        the median of what is left at the end [m], NaN where the block still moves in the last second.
     margin : float
         Smallest median margin against overturning of any joint [1]; NaN where no joint has one.
     over : str
@@ -79,6 +80,10 @@ def _outcome(case, response):
     farthest = int(at["peak"].argmax("marker"))
     block, marker = list(blocks.items())[farthest]
     peaks = counted_samples(response.samples)["peak"].sel(frame="slab", marker=marker)
+    peak, curve = float(at["peak"][farthest]), response.envelope["marker_displacement"]
+    late = curve.sel(frame="slab", quantile=0.5, marker=marker, axis="x")
+    late = late.sel(time=slice(float(late["time"][-1]) - _LAST, None))
+    rests = float(late.max() - late.min()) <= max(STILL, _RESTLESS * peak)
     margins = at["joint_margin"].dropna("joint")
     least = int(margins.argmin("joint")) if margins.size else None
     return Outcome(
@@ -86,10 +91,10 @@ def _outcome(case, response):
         counted=ended.counted,
         block=block,
         marker=marker,
-        peak=float(at["peak"][farthest]),
+        peak=peak,
         least=float(peaks.min()),
         most=float(peaks.max()),
-        end=abs(float(at["residual"][farthest])),
+        end=abs(float(at["residual"][farthest])) if rests else np.nan,
         margin=np.nan if least is None else float(margins[least]),
         over="" if least is None else str(margins["joint"].values[least]),
     )

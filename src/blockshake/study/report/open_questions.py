@@ -2,6 +2,8 @@
 
 from itertools import chain, count
 
+import numpy as np
+
 from blockshake.pages.rows import face_markers
 from blockshake.pages.wording import listed, model_label, number, parameter_label, percent, quantile_percent
 from blockshake.statistics.intervals import samples_needed, share_interval
@@ -23,6 +25,15 @@ def next_steps(content, found):
         steps.append(
             f"Simulate {listed(short)} until the strong motion ends: {number(strong_until(content, cases[name]))} s "
             "of the record (key duration)."
+        )
+    moving = [
+        name
+        for name, ended in found.items()
+        if any(not one.collapsed and np.isnan(one.end) for one in ended.values()) and name not in short
+    ]
+    if moving:
+        steps.append(
+            f"Simulate {listed(moving)} for longer (key duration): blocks still move as the window ends."
         )
     apart = [one for name in found for one in models_apart(cases[name], found[name])]
     impacts = shares_at_impacts(cases[max(apart).case], max(apart)[-2:]) if apart else None
