@@ -14,7 +14,7 @@ _NEAREST, _FARTHEST = (
     0.005,
     0.03,
 )  # s, from an impact: rates beyond its ringing, and before the swing bends them
-_FEWEST = 3  # rows on either side
+_FEWEST_ROWS = 3  # rows on either side
 _SAME_HEIGHT = 1e-3  # m, of joints beside each other
 _LEAST_SPIN = 0.05  # rad/s: slower closings are elastic
 
@@ -138,7 +138,7 @@ def _shares(time, angle, rate):
         since = time - at
         before = np.flatnonzero((since > -_FARTHEST) & (since < -_NEAREST))
         after = np.flatnonzero((since < _FARTHEST) & (since > _NEAREST))
-        if min(len(before), len(after)) < _FEWEST:
+        if min(len(before), len(after)) < _FEWEST_ROWS:
             continue
         sides = np.sign(angle[before]), np.sign(angle[after])
         if (sides[0] != sides[0][0]).any() or (sides[1] != -sides[0][0]).any():
