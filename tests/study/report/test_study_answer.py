@@ -57,7 +57,7 @@ def test_what_stands_and_what_may_collapse_is_that_of_the_samples(content):
     stands, may = box.sentence.split(". configuration-4 may collapse under ")
     assert stands.startswith(f"{FIRST} stands under basso-tirreno x 2 (2.47 m/s")
     upper = 100.0 * share_interval(0, 4)[1]  # of the model with the fewest samples
-    assert f"none of 28 runs by 4 models collapses; so many samples leave up to {upper:.0f} % for" in stands
+    assert f"none of 28 runs by 4 models collapses; its probability is below {upper:.0f} %" in stands
     # one collapsed and one failed of six
     assert may.endswith(": of the runs, 1 of 5 by NSCD rigid do, and none by the others.")
     lower, upper = (100.0 * one for one in share_interval(1, 5))

@@ -118,8 +118,8 @@ def _verdict(content, found):
     if names := sides["stand"]:
         upper = max(share_interval(0, one.counted)[1] for name in names for one in found[name].values())
         words.append(
-            f"{named(names, 'stand')}: none of {count_words(runs(names), 'run')} by {_by(found, names)} collapses; so "
-            f"many samples leave up to {_whole(upper)} % for a collapse"
+            f"{named(names, 'stand')}: none of {count_words(runs(names), 'run')} by {_by(found, names)} collapses; "
+            f"its probability is below {_whole(upper)} % (limit of 95 %)"
         )
     for name in sides["may"]:
         by = [
