@@ -351,7 +351,7 @@ def _generate_campaign(options):
 
 
 def _study(options):
-    from blockshake.run_study import run_study
+    from blockshake.own_files.run_study import run_study
     from blockshake.run_workflow import WorkflowError
 
     try:
