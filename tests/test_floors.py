@@ -10,7 +10,7 @@ from blockshake.files import PACKAGE
 FLOORS = [
     ["caches", "errors", "interrupts"],
     ["files", "paths", "quantities", "working_folder"],
-    ["validation", "log", "sources", "store", "run_workflow"],
+    ["validation", "log", "sources", "store"],
     ["tables", "statistics"],
     ["jit"],
     ["geometry"],
@@ -20,7 +20,8 @@ FLOORS = [
     ["effects", "pages"],
     ["study", "views"],
     ["diagnosis", "virtual"],
-    ["run_diagnosis", "own_files"],
+    ["own_files"],
+    ["run_diagnosis"],
     ["cost"],
     ["cli"],
 ]
@@ -49,14 +50,14 @@ ROOMS_OF_STUDY = [
 MOST_MODULES = 15
 WITH_ROOMS = ("diagnosis", "study")  # whose folders have a budget each
 MOST_LINES = {
-    ".": 2190, "tables": 610, "statistics": 370, "geometry": 2490, "dynamics": 2795, "solvers": 8610,
+    ".": 2110, "tables": 610, "statistics": 370, "geometry": 2490, "dynamics": 2795, "solvers": 8610,
     "measurement": 4050, "simulation": 1776, "parity": 2265, "forces": 2160, "effects": 990, "pages": 1378,
     "study": 895, "study/sampling": 969, "study/ensembles": 1315, "study/stiffness": 590,
     "study/comparison": 546, "study/fragility": 525, "study/sensitivity": 825, "study/calibration": 1090,
     "study/statements": 1071, "study/report": 2046, "views": 750, "diagnosis": 315,
     "diagnosis/evidence": 1095, "diagnosis/outside": 675, "diagnosis/answer": 1200,
     "diagnosis/nominal": 795, "diagnosis/misfit": 430, "diagnosis/verdict": 570, "diagnosis/gain": 1245,
-    "diagnosis/report": 995, "virtual": 485, "own_files": 1045, "cost": 310, "diagnosis/flight": 1255,
+    "diagnosis/report": 995, "virtual": 485, "own_files": 1125, "cost": 310, "diagnosis/flight": 1255,
 }  # fmt: skip
 MOST_LINES_TOGETHER = 49_600
 

@@ -6,11 +6,12 @@ from types import SimpleNamespace
 
 import pytest
 
-from blockshake import run_diagnosis, run_workflow
+from blockshake import run_diagnosis
 from blockshake.cli import main
 from blockshake.diagnosis.verdict.ladder import NOTHING, ONE_OF, PROBABLE, UNKNOWN
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE
+from blockshake.own_files import run_workflow
 from blockshake.working_folder import hold, this_command
 
 CAMPAIGN = PACKAGE.parents[1] / "data" / "virtual-campaign" / "configuration-1"

@@ -352,7 +352,7 @@ def _generate_campaign(options):
 
 def _study(options):
     from blockshake.own_files.run_study import run_study
-    from blockshake.run_workflow import WorkflowError
+    from blockshake.own_files.run_workflow import WorkflowError
 
     try:
         run_study(
@@ -364,8 +364,8 @@ def _study(options):
 
 
 def _diagnose(options):
+    from blockshake.own_files.run_workflow import WorkflowError
     from blockshake.run_diagnosis import diagnose
-    from blockshake.run_workflow import WorkflowError
 
     try:
         verdict = diagnose(options.campaign, options.output, options.effort, options.cores)

@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 
 from blockshake.files import HOME, PACKAGE, check_output
-from blockshake.run_workflow import cores_of, run_workflow, workflow_command
+from blockshake.own_files.run_workflow import cores_of, run_workflow, workflow_command
 from blockshake.working_folder import hold
 
 _ALWAYS_MADE = ("verdict.json", "decision.json", "parity.json", "evidence.nc")

@@ -22,6 +22,7 @@ from blockshake.errors import InputError
 from blockshake.files import PACKAGE, write_dataset
 from blockshake.geometry.structure import build_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
+from blockshake.own_files.run_workflow import WorkflowError
 from blockshake.pages.blocks import (
     Box,
     Document,
@@ -36,7 +37,6 @@ from blockshake.pages.blocks import (
 )
 from blockshake.pages.drawing import new_figure, svg_of
 from blockshake.pages.writing import write_html, write_pdf
-from blockshake.run_workflow import WorkflowError
 from blockshake.simulation.simulate import simulate
 from blockshake.study.config import check_config
 

@@ -9,7 +9,7 @@ import yaml
 from blockshake.cli import main
 from blockshake.files import HOME, load_yaml
 from blockshake.own_files import run_study as of_study
-from blockshake.run_workflow import WorkflowError, workflow_command
+from blockshake.own_files.run_workflow import WorkflowError, workflow_command
 from blockshake.study.config import load_config
 from blockshake.working_folder import hold
 

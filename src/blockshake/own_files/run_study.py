@@ -12,7 +12,7 @@ import yaml
 from blockshake.errors import InputError
 from blockshake.files import check_output, load_yaml, write_text
 from blockshake.jit import CACHE_FOLDER
-from blockshake.run_workflow import WorkflowError, cores_of, run_workflow, workflow_command
+from blockshake.own_files.run_workflow import WorkflowError, cores_of, run_workflow, workflow_command
 from blockshake.simulation.models import MODELS
 from blockshake.study.config import load_config
 from blockshake.working_folder import hold
