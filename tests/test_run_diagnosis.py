@@ -11,6 +11,7 @@ from blockshake.cli import main
 from blockshake.diagnosis.verdict.ladder import NOTHING, ONE_OF, PROBABLE, UNKNOWN
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE
+from blockshake.own_files import run_workflow
 from blockshake.working_folder import hold, this_command
 
 CAMPAIGN = PACKAGE.parents[1] / "data" / "virtual-campaign" / "configuration-1"
@@ -86,13 +87,24 @@ def test_the_workflow_ends_with_the_diagnosis(tmp_path, monkeypatch):
     """A diagnosis that is killed leaves no workflow behind, which would hold the folder."""
     given = {}
 
-    def run(_, environment):
-        given.update(environment)
-        return 1
+    class Stopped:
+        stdout = None
+
+        def __init__(self, command, env, **_):
+            given.update(env)
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *_):
+            return None
+
+        def wait(self):
+            return 1
 
     monkeypatch.setattr(run_diagnosis, "HOME", tmp_path)
-    monkeypatch.setattr(run_diagnosis, "run_workflow", run)
-    with pytest.raises(run_diagnosis.WorkflowError, match="the workflow stopped"):
+    monkeypatch.setattr(run_workflow.subprocess, "Popen", Stopped)
+    with pytest.raises(run_workflow.WorkflowError, match="the workflow stopped"):
         run_diagnosis.diagnose(CAMPAIGN, tmp_path / "new" / "output")
     assert not (tmp_path / "new").exists()
     assert this_command().items() <= given.items()

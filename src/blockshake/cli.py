@@ -157,6 +157,16 @@ def _parser():
     )
 
     command = add(
+        "study", _study, "samples, envelopes and the report of a study; goes on where it was stopped"
+    )
+    command.add_argument("file", metavar="STUDY.yaml", help="`blockshake new study` writes one")
+    command.add_argument(
+        "--output", metavar="DIR", help="of results, reports and logs (default: the current folder)"
+    )
+    command.add_argument("--case", metavar="NAME", help="one case of the study, with a report of its own")
+    command.add_argument("--cores", type=int, metavar="N", help="default: all")
+
+    command = add(
         "diagnose",
         _diagnose,
         "what simulations of measured tests get wrong, the cause, and what naming it gains",
@@ -365,8 +375,22 @@ def _generate_campaign(options):
     print(f"{options.output}: a synthetic campaign; its truth: {options.truth}")
 
 
+def _study(options):
+    from blockshake.own_files.run_study import run_study
+    from blockshake.own_files.run_workflow import WorkflowError
+
+    try:
+        run_study(
+            options.file, options.output, options.cores, options.case, lambda line: print(line, flush=True)
+        )
+    except WorkflowError as stopped:
+        return stopped.exit_code
+    return 0
+
+
 def _diagnose(options):
-    from blockshake.run_diagnosis import WorkflowError, diagnose
+    from blockshake.own_files.run_workflow import WorkflowError
+    from blockshake.run_diagnosis import diagnose
 
     try:
         verdict = diagnose(options.campaign, options.output, options.effort, options.cores)

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -59,14 +60,14 @@ class Store(NamedTuple):
         decimals : dict, optional
             Decimal digits kept of each unit, see `write_dataset`.
         """
-        path, how = self._path(given, ".nc"), "kept"
+        path, how, cost, begin = self._path(given, ".nc"), "kept", "", time.monotonic()
         if not kept(path):
             made = make(path.with_suffix(".checkpoint"))
             _keep(path, lambda temporary: write_dataset(temporary, made, decimals))
-            how = "simulated"
+            how, cost = "simulated", f"; took {time.monotonic() - begin:.3g} s"
         with delayed_interrupts(), xr.open_dataset(path) as unit:
             ended = f"{unit.attrs['status']} {unit.attrs.get('reason', '')}".rstrip()
-        self.say(f"{words}, {how}: {ended}")
+        self.say(f"{words}, {how}: {ended}{cost}")
         return path
 
     def _path(self, given, suffix):

@@ -22,6 +22,7 @@ from blockshake.errors import InputError
 from blockshake.files import PACKAGE, write_dataset
 from blockshake.geometry.structure import build_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
+from blockshake.own_files.run_workflow import WorkflowError
 from blockshake.pages.blocks import (
     Box,
     Document,
@@ -206,9 +207,9 @@ def test_a_diagnosis_is_told_the_very_folder(odd, tmp_path, monkeypatch):
 
     given = []
 
-    def taken(command, _):
+    def taken(command):
         given.extend(command)
-        return 1
+        raise WorkflowError(1)
 
     monkeypatch.setattr(run_diagnosis, "run_workflow", taken)
     monkeypatch.setattr("blockshake.diagnosis.nominal.plan.plan_diagnosis", lambda *_: None)

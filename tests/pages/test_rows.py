@@ -1,7 +1,7 @@
 import pytest
 
 from blockshake.geometry.structure import load_structure
-from blockshake.pages.rows import face_markers, main_bodies
+from blockshake.pages.rows import face_markers
 
 
 @pytest.mark.parametrize("name", ["configuration-1", "configuration-2", "configuration-3", "configuration-4"])
@@ -13,18 +13,6 @@ def test_rows_go_from_the_top_block_down_and_hold_every_block(name):
     blocks = [body.name for body in structure.file.bodies if not body.driven and body.shape != "beam"]
     assert sorted(markers) == sorted(blocks)
     assert all(marker == f"{body}-face" for body, marker in markers.items())
-
-
-def test_main_figure_of_two_walls_holds_the_top_and_two_blocks_a_wall():
-    structure = load_structure("configuration-4")
-    assert main_bodies(structure, face_markers(structure)) == [
-        "top", "wall-a-4", "wall-a-2", "wall-b-4", "wall-b-2",
-    ]  # fmt: skip
-
-
-def test_main_figure_of_a_tower_holds_all():
-    structure = load_structure("configuration-2")
-    assert main_bodies(structure, face_markers(structure)) == ["block-4", "block-3", "block-2", "block-1"]
 
 
 def test_structure_without_face_markers_takes_the_first_of_each_body(make_structure):

@@ -58,6 +58,8 @@ def make_run():
                 "joint_compression": ("joint", [1e5], {"units": "N", "long_name": "compression"}),
                 "joint_uplift": ("joint", [0.4 * angle], {"units": "m", "long_name": "uplift"}),
                 "joint_slip": ("joint", [np.abs(amplitude).max()], {"units": "m", "long_name": "slip"}),
+                "joint_margin": ("joint", [np.cos(angle)], {"units": "1", "long_name": "margin"}),
+                "joint_spin_kept": ("joint", [np.nan], {"units": "1", "long_name": "spin kept"}),
             },
             coords={
                 "time": ("time", TIME, {"units": "s"}),

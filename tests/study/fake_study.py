@@ -215,6 +215,12 @@ class FakeStudy:
                 ),
                 "joint_uplift": ("joint", 1e-3 * strength * np.arange(1, len(joints) + 1), {"units": "m"}),
                 "joint_slip": ("joint", 2e-4 * strength * np.arange(len(joints), 0, -1), {"units": "m"}),
+                "joint_margin": (
+                    "joint",
+                    1.0 - 0.5 * strength / np.arange(1, len(joints) + 1),
+                    {"units": "1"},
+                ),
+                "joint_spin_kept": ("joint", np.full(len(joints), 0.9 - 0.2 * strength), {"units": "1"}),
             },
             coords={
                 "time": self.time,

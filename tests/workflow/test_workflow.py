@@ -6,6 +6,7 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import time
 
 import pytest
@@ -33,6 +34,20 @@ def finished(tmp_path_factory):
 def test_study_ends_with_its_reports(finished):
     assert (finished.folder / "reports" / "small.html").stat().st_size > 0
     assert (finished.folder / "reports" / "small.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_the_command_finds_all_made_and_reports_one_case(finished):
+    """`blockshake study` is the same workflow."""
+    environment = {**os.environ, "PYTHONPATH": str(finished.folder / "src")}
+    command = [sys.executable, "-m", "blockshake", "study", "config/small.yaml", "--cores", "2"]
+    for more, made in (([], "small.html"), (["--case", "configuration-1"], "small-configuration-1.html")):
+        answer = subprocess.run(
+            [*command, *more], cwd=finished.folder, env=environment, capture_output=True, text=True, timeout=LIMIT,
+            check=False,
+        )  # fmt: skip
+        assert answer.returncode == 0, answer.stdout + answer.stderr
+        assert f"; reports/{made}, " in answer.stdout.splitlines()[-1]
+        assert "samples;" not in answer.stdout  # nothing is simulated
 
 
 def test_printed_configuration_plans_the_same_study(finished):

@@ -37,7 +37,7 @@ def case_files(wildcards):
 
 def case_keys(case, *more):
     """Entries of a case in the configuration that its runs depend on."""
-    keys = ("structure", "motion", "baseline", "duration", *more)
+    keys = ("name", "structure", "motion", "baseline", "duration", *more)
     return {key: CASES[case][key] for key in keys}
 
 

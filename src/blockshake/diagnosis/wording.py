@@ -6,7 +6,7 @@ from blockshake.diagnosis.answer.places import EVERYWHERE
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS, title_of
 from blockshake.pages.units import Printed, printed
-from blockshake.pages.wording import number
+from blockshake.pages.wording import listed, number
 
 _MANY = 1e6  # from which on odds are told in words
 _ALONG_X = ("force", "impulse", "offset")
@@ -96,12 +96,6 @@ def when_words(when):
 
 def _seconds(time):
     return f"{max(time, 0.0):.2f} s"
-
-
-def listed(words, last="and"):
-    """Words in a row: ``a, b and c``."""
-    *others, end = words
-    return f"{', '.join(others)} {last} {end}" if others else end
 
 
 def times_words(odds):

@@ -12,22 +12,6 @@ def face_markers(structure):
     return dict(sorted(chosen.items(), key=lambda item: -round(height[item[0]], 3)))
 
 
-def main_bodies(structure, bodies, most=4):
-    """Bodies for a figure of few rows, from the top down: all, or of each stack every second one from its top.
-
-    ``most``: rows up to which all are shown.
-    """
-    bodies = list(bodies)
-    if len(bodies) <= most:
-        return bodies
-    places = np.round(structure.position, 2)
-    stacks = {}
-    for body in bodies:
-        index = structure.body_names.index(body)
-        stacks.setdefault(tuple(places[index, :2]), []).append(body)
-    return [body for stack in stacks.values() for body in stack[::2]]
-
-
 def bodies_by_height(structure, bodies, most=5):
     """One body of each height, from the lowest up: in two equal walls those of the first.
 

@@ -101,6 +101,12 @@ def count_words(count, noun):
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
+def listed(words, last="and"):
+    """Words in a row: ``a, b and c``."""
+    *others, end = words
+    return f"{', '.join(others)} {last} {end}" if others else end
+
+
 def sentence_case(text):
     """Text as a sentence: first letter large, full stop at the end."""
     return f"{text[0].upper()}{text[1:]}."

@@ -6,6 +6,7 @@ import xarray as xr
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.joints import contact_normals, find_joints, joint_coordinates
 from blockshake.simulation.energy_residual import unexplained_energy
+from blockshake.simulation.rocking import overturning_margins, spin_kept
 from blockshake.simulation.run_dataset import histories
 
 # dimensions, unit and name of the histories of the joints, and of all
@@ -141,7 +142,8 @@ def joint_figures(run, structure):
     xarray.Dataset
         ``joint_compression(joint)``: normal force that is exceeded for 1 % of the time [N]; ``joint_uplift`` and
         ``joint_slip(joint)``: largest opening and slip at the middle of the face, see `run_histories` [m]. NaN where
-        a joint is not known there. Coordinate ``joint``, ``lower-upper``, from the foundation up.
+        a joint is not known there. ``joint_margin(joint)``, from `overturning_margins`, and ``joint_spin_kept(joint)``,
+        from `spin_kept` [1]. Coordinate ``joint``, ``lower-upper``, from the foundation up.
 
     Notes
     -----
@@ -165,10 +167,22 @@ def joint_figures(run, structure):
             for c, there in zip(columns, known, strict=True)
         ]
 
+    reached = np.isfinite(run["position"]).all(("body", "axis")).to_numpy()
+    seen = run.isel(time=reached).transpose("time", "body", "axis", "quaternion", ...)
+    moved = structure, seen["position"].to_numpy(), rotation_matrices(seen["orientation"].to_numpy())
+    time, spin = seen["time"].to_numpy(), seen["angular_velocity"].to_numpy()
+    rocking = {
+        "joint_margin": overturning_margins(*moved),
+        "joint_spin_kept": spin_kept(structure, time, *moved[1:], spin),
+    }
     return xr.Dataset(
         {
             name: ("joint", figure(history, statistic), {"units": units, "long_name": long_name})
             for name, (history, statistic, units, long_name) in _FIGURES.items()
+        }
+        | {
+            name: ("joint", values, {"units": "1", "long_name": _ROCKING[name]})
+            for name, values in rocking.items()
         },
         coords={"joint": np.array([f"{names[lower]}-{names[upper]}" for lower, upper in pairs], dtype=str)},
     )
@@ -184,4 +198,8 @@ _FIGURES = {
     "joint_uplift": ("uplift", np.nanmax, "m", "largest opening at the middle of the face"),
     "joint_slip": ("slip", np.nanmax, "m", "largest slip at the middle of the face"),
 }
-JOINT_FIGURES = tuple(_FIGURES)
+_ROCKING = {
+    "joint_margin": "least margin against overturning of all above the joint",
+    "joint_spin_kept": "share of the spin that impacts of the joint keep, median over them",
+}
+JOINT_FIGURES = (*_FIGURES, *_ROCKING)

@@ -7,12 +7,7 @@ import pytest
 from blockshake.files import load_json
 from blockshake.simulation.models import MODELS
 from blockshake.study.comparison.section import case_words, models
-from blockshake.study.comparison.tables import (
-    block_tables,
-    numerics_table,
-    other_settings_table,
-    pairs_table,
-)
+from blockshake.study.comparison.tables import block_tables, other_settings_table, pairs_table
 from blockshake.study.report.content import load_content
 from blockshake.study.report.report import make_report
 from blockshake.study.statements.section import judge_statements
@@ -27,11 +22,10 @@ def content(fake):
 
 def test_every_block_has_its_numbers_by_every_model(content):
     case = content.cases[FIRST]
-    peak, residual, width = block_tables(case)
+    peak, residual = block_tables(case)
     assert [row[0] for row in peak.rows] == ["block-3", "block-2", "block-1"]
     labels = [f"{model.label} (n = {4 if 'elastic' in name else 10})" for name, model in MODELS.items()]
     assert peak.header == ("Block", "Virtual test (synthetic)", *labels)
-    assert width.header == ("Block", *labels)
     at = case.differences.sel(marker="block-3-face", model="ls-dem")
     low, high = (1e3 * float(one) for one in at["peak_interval"])
     assert peak.rows[0][2] == f"{1e3 * float(at['peak']):.1f} [{low:.1f}, {high:.1f}]"
@@ -46,10 +40,8 @@ def test_every_block_has_its_numbers_by_every_model(content):
     assert len({len(row) for row in (*residual.rows, residual.header)}) == 1
 
 
-def test_one_sample_has_medians_and_no_width(content):
-    peak, _, width = block_tables(content.cases[LAST])
-    place = width.header.index("NSCD elastic (n = 1)")
-    assert {row[place] for row in width.rows} == {"none"}
+def test_one_sample_has_medians(content):
+    peak, _ = block_tables(content.cases[LAST])
     top = content.cases[LAST].differences["peak"].sel(model="nscd-elastic", marker="top-face")
     assert peak.rows[0][peak.header.index("NSCD elastic (n = 1)")] == f"{1e3 * float(top):.1f}"
     assert "NSCD elastic (" not in peak.caption
@@ -57,24 +49,8 @@ def test_one_sample_has_medians_and_no_width(content):
 
 def test_every_pair_and_every_model_has_a_row(content):
     assert len(pairs_table(content).rows) == 2 * 6
-    assert len(numerics_table(content).rows) == 2 * 4
     rows = {row[:2]: row for row in pairs_table(content).rows}
     assert rows[LAST, "LS-DEM and NSCD elastic"][2:4] == ("none", "none")
-
-
-def test_models_of_rigid_blocks_are_held_against_their_numerics(content):
-    case = content.cases[FIRST]
-    words = case_words(case)
-    assert words.startswith("configuration-1, basso-tirreno x 2: the ensembles of ")
-    assert words.count("both have rigid blocks") == 1
-    pair = {"model": "ls-dem", "other": "nscd-rigid"}
-    floors = case.differences["floor"].max("twin")
-    case.differences["history_difference"].loc[pair] = 4.0 * float(
-        floors.sel(model=["ls-dem", "nscd-rigid"]).max()
-    )
-    assert "4 times the larger floor of their numerics" in case_words(case)
-    case.differences["parting_time"].loc[pair] = np.inf
-    assert "the runs are not told apart within the window" in case_words(case)
 
 
 def test_pairs_beyond_chance_are_counted(content):

@@ -3,13 +3,10 @@ from dataclasses import replace
 from page import CLAIMS
 
 from blockshake.study.statements.section import (
-    HEADER,
     count_words,
     judge_statements,
-    statements,
 )
 from blockshake.study.statements.statement import PaperVerdict
-from blockshake.study.statements.table import STATEMENTS
 
 
 def test_every_statement_has_a_place_and_a_verdict(content):
@@ -25,14 +22,6 @@ def test_every_statement_has_a_place_and_a_verdict(content):
         assert not [claimed for claimed in CLAIMS if claimed in f"{claim} {words}".lower()]
     given = [row[2] for row in rows]
     assert f"Of {len(rows)} statements: {given.count('met')} met," in count_words(found)
-
-
-def test_the_section_has_the_findings(content):
-    section = statements(content)
-    tables = [block for block in section.blocks if block.kind == "table"]
-    assert [table.header for table in tables] == [HEADER] * len(STATEMENTS)
-    for table in tables:
-        assert len(table.widths) == len(table.header)
 
 
 def test_a_study_of_one_model_and_no_test_judges_what_it_can(content):

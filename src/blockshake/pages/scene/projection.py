@@ -14,10 +14,11 @@ def _turned(azimuth, elevation):
     return np.array([right, np.cross(towards, right), towards])
 
 
-# front: x to the right; side: seen from +x, y to the right; 3d: from the front, the right and above
+# front: x to the right; side: from +x, y to the right; far side: from -x; 3d: from the front, the right and above
 VIEWS = {
     "front": _turned(0.0, 0.0),
     "side": _turned(0.5 * np.pi, 0.0),
+    "far side": _turned(-0.5 * np.pi, 0.0),
     "3d": _turned(np.radians(35.0), np.radians(20.0)),
 }
 _LIGHT = np.array([-0.35, 0.45, 0.82])  # from the left, above and behind the eye, in axes of the view

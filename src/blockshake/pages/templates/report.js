@@ -1,3 +1,6 @@
+// The contents stand open where there is room for them beside the text.
+document.querySelector("nav details").open = matchMedia("(min-width: 76rem)").matches;
+
 // Every table can be saved as CSV, and every figure as SVG: what the page holds, and nothing from elsewhere.
 for (const figure of document.querySelectorAll("figure")) {
   const table = figure.querySelector("table");

@@ -5,14 +5,11 @@ from itertools import combinations
 import numpy as np
 
 from blockshake.pages.blocks import Heading, Items, Section, Text
-from blockshake.pages.wording import count_words, given, model_label, number, share_words
-from blockshake.simulation.models import MODELS
+from blockshake.pages.wording import count_words, given, model_label, share_words
 from blockshake.study.comparison.comparison import CHANGES
 from blockshake.study.comparison.tables import (
     at_top,
     in_millimetres,
-    larger_floor,
-    numerics_table,
     other_settings,
     other_settings_table,
     pairs_table,
@@ -35,7 +32,6 @@ def models(content):
         ),
         Items(tuple(map(case_words, content.cases.values()))),
         pairs_table(content),
-        numerics_table(content),
     ]
     if (prices := other_settings_table(content)) is not None:
         words = tuple(_settings_words(content, model) for model in other_settings(content))
@@ -47,7 +43,7 @@ def models(content):
 
 
 def case_words(case):
-    """How far the models of a case are apart, in sentences; a pair of models with rigid blocks at more length."""
+    """How far the models of a case are apart, in sentences."""
     pairs = list(combinations(case.differences["model"].values, 2))
     at = {pair: case.differences.sel(model=pair[0], other=pair[1]) for pair in pairs}
     distance = {pair: float(at[pair]["distance"]) for pair in pairs if np.isfinite(at[pair]["distance"])}
@@ -73,9 +69,6 @@ def case_words(case):
             f" Nearest are {_both(near)} ({in_millimetres(distance[near])} mm), farthest {_both(far)} "
             f"({in_millimetres(distance[far])} mm)."
         )
-    for pair in pairs:
-        if all(model in MODELS and MODELS[model].rigid for model in pair):
-            words += f" {_rigid_words(case.differences, pair)}"
     return words
 
 
@@ -93,32 +86,3 @@ def _settings_words(content, model):
 
 def _both(pair):
     return " and ".join(map(model_label, pair))
-
-
-def _rigid_words(differences, pair):
-    """Difference of two models of rigid blocks beside the floor and the horizons of their numerics."""
-    at = differences.sel(model=pair[0], other=pair[1])
-    words = (
-        f"{_both(pair)} both have rigid blocks: the same sample by both differs by "
-        f"{in_millimetres(at['history_difference'])} mm (median of {int(at['common'])})"
-    )
-    floors = [larger_floor(differences, model) for model in pair]
-    parted = f"the runs {_parted(at['parting_time'])}"
-    if not np.isfinite(floors).all() or max(floors) == 0.0:
-        return f"{words}; {parted}."
-    twins = ", ".join(
-        f"those of {model_label(model)} {_parted(differences['horizon'].sel(model=model).min('twin', skipna=False))}"
-        for model in pair
-    )
-    ratio = float(at["history_difference"]) / max(floors)
-    return (
-        f"{words}, {number(ratio, 2)} times the larger floor of their numerics ({in_millimetres(max(floors))} mm); "
-        f"{parted}. Of the twins by one model {twins}."
-    )
-
-
-def _parted(time):
-    """When curves part, in words."""
-    return (
-        "are not told apart within the window" if np.isposinf(float(time)) else f"part after {number(time)} s"
-    )

@@ -1,4 +1,4 @@
-"""Tables of what differs between the models: blocks, pairs of models, numerics, scores."""
+"""Tables of what differs between the models: blocks, pairs of models, scores."""
 
 from itertools import chain, combinations
 
@@ -9,12 +9,12 @@ from blockshake.pages.rows import face_markers
 from blockshake.pages.wording import MISSING, given, millimetres, model_label, number
 from blockshake.simulation.models import solver_of
 from blockshake.statistics.intervals import SURE_FROM
-from blockshake.study.comparison.comparison import CHANGES, TOLD_APART_BY
+from blockshake.study.comparison.comparison import CHANGES
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
 
 
 def block_tables(case):
-    """Peak, residual and width of the envelope of every block by every model, a table each."""
+    """Peak and residual of every block by every model, a table each."""
     found = case.differences
     at_end = f"mean over the last {given(RESIDUAL_WINDOW)} s of the window"
     limits = (
@@ -24,10 +24,6 @@ def block_tables(case):
         "peak": f"peak displacement along x relative to the slab [mm], median over the n samples. {limits}",
         "residual": f"residual displacement ({at_end}) relative to the slab [mm], median over those of the n samples "
         f"that did not fall. {limits}",
-        "width": "width of the envelope [mm]: mean difference of two samples, over all pairs and times. The width does "
-        "not grow with the number of samples, as the bounds in the figures do. In brackets bootstrap limits of 95 %, "
-        f"which hold in 89 to 93 of 100 cases; none with fewer than {SURE_FROM} samples, and no width with fewer than "
-        "three.",
     }
     return [_block_table(case, found, name, f"{case.name}: {words}") for name, words in captions.items()]
 
@@ -121,31 +117,6 @@ def other_settings_table(content):
 def at_top(case):
     """Differences of the models of a case at the marker of its top block."""
     return case.differences.sel(marker=next(iter(face_markers(case.structure).values())))
-
-
-def numerics_table(content):
-    """Floor and horizon of each model's numerics."""
-    rows = []
-    for case in content.cases.values():
-        found = case.differences
-        for model in found["model"].values:
-            at = found.sel(model=model)
-            rows.append((
-                case.name, model_label(model),
-                *(in_millimetres(at["floor"].sel(twin=one)) for one in ("nudged", "half-step")),
-                *(_seconds(at["horizon"].sel(twin=one), case) for one in ("nudged", "half-step")),
-            ))  # fmt: skip
-    return Table(
-        "Numerics of each model. Twins of the first sample: with a ground motion larger by one part in a million "
-        "(nudged), and with half the time step. Floor: mean difference from the twin. Horizon: when the sample is "
-        f"first told apart from its twin, by more than {given(TOLD_APART_BY)} standard deviations of a marker's noise "
-        f"at any block. {MISSING}: no twins, because the model ran fewer than three samples of the case.",
-        (
-            "Case", "Model", "Floor, nudged [mm]", "Floor, half step [mm]", "Horizon, nudged [s]",
-            "Horizon, half step [s]",
-        ),
-        tuple(rows), "llrrrr",
-    )  # fmt: skip
 
 
 def scores_table(content):

@@ -85,7 +85,7 @@ def simulate_samples(runs, motions, rows, store):
             solver, identity, *motion.table, case["duration"], output_rate, settings["time_step"], parameters,
             int(sample), row.to_dict(),
         )  # fmt: skip
-        words = f"{structure.file.name} {model} sample {sample}"
+        words = f"{case.get('name', structure.file.name)} {model} sample {sample}"
         finished.append(store.dataset(words, given, simulated, DECIMALS))
     return finished
 

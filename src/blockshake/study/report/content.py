@@ -148,11 +148,6 @@ class Content:
     digests: dict
     versions: dict
 
-    @property
-    def name(self):
-        """Name of the report, as in the names of its files."""
-        return f"{self.study['name']}-{self.only}" if self.only else self.study["name"]
-
     def peak_acceleration(self, case):
         """Peak ground acceleration of a case's scaled motion [m/s2]."""
         return case.settings["scale"] * self.motions[case.motion].attrs["peak_acceleration"]

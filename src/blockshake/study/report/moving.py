@@ -4,13 +4,13 @@ import base64
 import json
 
 import numpy as np
-from matplotlib.collections import PolyCollection
 from scipy.spatial.transform import Rotation
 
 from blockshake.measurement.sensors.markers import marker_bodies
-from blockshake.pages.drawing import DARK_GREY, RED, column_title, new_figure
+from blockshake.pages.drawing import RED, column_title, new_figure
 from blockshake.pages.scene.bodies import body_colors, body_mesh
 from blockshake.pages.scene.projection import VIEWS, Scene
+from blockshake.pages.scene.structure_picture import draw_blocks
 from blockshake.pages.wording import given, millimetres, model_label
 from blockshake.study.ensembles.shown_samples import shown_markers
 
@@ -75,14 +75,14 @@ def plot_still(case):
     Magnified as `usual_magnification` says; markers on faces that look away are left out.
     """
     magnification = usual_magnification(case)
-    scene, colors = Scene(case.structure, "3d"), body_colors(case.structure)
+    scene = Scene(case.structure, "3d")
     found = {model: one.shown for model, one in case.responses.items() if one.shown.sizes["sample"]}
     figure = new_figure(0.075)
     panels = figure.subplots(1, len(found), sharex=True, sharey=True, squeeze=False)[0]
     for axes, (model, shown) in zip(panels, found.items(), strict=True):
         one = shown.isel(sample=0).transpose("time", "body", "axis")
         frame = int(np.abs(one["shift"].sel(axis="x")).max("body").argmax("time"))
-        _draw_blocks(axes, scene, colors, case.structure, one.isel(time=frame), magnification)
+        draw_blocks(axes, scene, case.structure, *_moved(case.structure, one.isel(time=frame), magnification))
         if case.test is not None:
             _draw_markers(axes, scene, case, one["time"].to_numpy()[frame], magnification)
         words = f"{model_label(model)}\nsample {int(one['sample'])} at {float(one['time'][frame]):.2f} s"
@@ -93,13 +93,11 @@ def plot_still(case):
     return figure
 
 
-def _draw_blocks(axes, scene, colors, structure, pose, magnification):
-    place = structure.position + magnification * pose["shift"].to_numpy()
+def _moved(structure, pose, magnification):
+    """Places and orientations of the bodies at a magnified pose."""
     turn = Rotation.from_rotvec(magnification * pose["turn"].to_numpy())
     turned = turn * Rotation.from_quat(structure.orientation, scalar_first=True)
-    outlines, bodies, light = scene.faces(place, turned.as_quat(scalar_first=True))
-    shades = colors[bodies] * np.array(light)[:, None]
-    axes.add_collection(PolyCollection(outlines, facecolors=shades, edgecolors=DARK_GREY, linewidths=0.3))
+    return structure.position + magnification * pose["shift"].to_numpy(), turned.as_quat(scalar_first=True)
 
 
 def _draw_markers(axes, scene, case, time, magnification):

@@ -1,4 +1,4 @@
-"""Sections on the inputs: summary, structures, motions."""
+"""Sections on the cases in figures, and on the inputs: structures, motions."""
 
 import numpy as np
 
@@ -19,40 +19,15 @@ from blockshake.pages.wording import (
     percent,
 )
 from blockshake.statistics.intervals import CONFIDENCE, samples_needed
-from blockshake.study.ensembles.outcomes import count_outcomes, shortfall
-from blockshake.study.report.conclusions import conclusions
+from blockshake.study.ensembles.outcomes import count_outcomes, numerical_figure, shortfall, unfinished
 from blockshake.study.report.motion_figure import plot_motions, plot_spectra
 
 _SHOWN = (0.5, 0.95)  # quantiles of peaks and rotations
 
 
-def summary(content):
-    """Conclusions, the figures behind them, and the cases."""
-    cases = content.cases.values()
-    synthetic_tests = [case.name for case in cases if case.synthetic]
-    synthetic_motions = sorted(
-        {case.motion for case in cases if content.motions[case.motion].attrs.get("synthetic")}
-    )
-    blocks = []
-    if synthetic_tests:
-        blocks.append(
-            Text(
-                f"The measured curves of {', '.join(synthetic_tests)} are SYNTHETIC: virtual tests, each one run "
-                "simulated by a solver of this program with parameters drawn at random, seen through noisy markers; "
-                "an effect that the models here lack may be hidden in them. Nothing was measured there, and the "
-                "distance of a model from such a curve tells nothing about reality.",
-                strong=True,
-            )
-        )
-    if synthetic_motions:
-        blocks.append(
-            Text(
-                f"The ground motions are synthetic too ({', '.join(synthetic_motions)}): made by a stochastic method, "
-                "not recorded.",
-                strong=True,
-            )
-        )
-    responses = [one for case in cases for one in case.responses.values()]
+def figures(content):
+    """The figures behind the answer: probabilities and peaks with their limits, and the cases."""
+    responses = [one for case in content.cases.values() for one in case.responses.values()]
     ended = count_outcomes(np.concatenate([one.samples["status"] for one in responses]))
     runs = (
         f"{count_words(len(content.cases), 'case')}, {count_words(len(content.study['models']), 'model')} "
@@ -60,14 +35,39 @@ def summary(content):
         f"{ended.completed} completed, {ended.collapsed} collapsed, {ended.falling} still falling "
         f"when the window ended, {ended.failed} failed."
     )
-    blocks += [
-        *conclusions(content),
-        Heading("Figures behind these sentences", "figures-of-summary"),
-        probability_table(content),
-        Text(runs),
-        _cases_table(content),
-    ]
-    return Section("Summary", "summary", tuple(blocks))
+    blocks = (Text(runs), probability_table(content), _cases_table(content), *failures(content))
+    return Section("Cases in figures", "figures", blocks)
+
+
+def failures(content):
+    """Samples that did not complete, with the reason, and the largest residual of the energy; a list of blocks."""
+    rows, residual, capped = [], 0.0, 0.0
+    for case in content.cases.values():
+        for model, response in case.responses.items():
+            samples = response.samples
+            residual = np.fmax(residual, numerical_figure(samples, "energy_residual", np.max))
+            capped = np.fmax(capped, numerical_figure(samples, "numerics_fraction_above_1e-4", np.max))
+            rows += [
+                (
+                    case.name, model_label(model), str(int(one["sample"])), str(one["status"].values),
+                    number(one["end_time"]), str(one["reason"].values),
+                )
+                for one in unfinished(samples)
+            ]  # fmt: skip
+    words = (
+        f"Numerics: the largest share of energy that a run does not explain is {number(100.0 * residual, 2)} %"
+        + (
+            f", the largest share of steps above a residual of 1e-4 {number(100.0 * capped, 2)} %."
+            if capped
+            else "."
+        )
+    )
+    table = Table(
+        "Samples that did not complete. Samples that collapsed, or still fell when the window ended, count in the "
+        "statistics up to their end; failed samples do not.",
+        ("Case", "Model", "Sample", "Status", "End [s]", "Reason"), tuple(rows), "llrlrl",
+    )  # fmt: skip
+    return [*([table] if rows else []), Text(words)]
 
 
 def probability_table(content):
@@ -216,7 +216,7 @@ def motions(content):
         Text("Motions at 100 %; the cases multiply them by their scale."),
         Items(tuple(f"{one.attrs['name']}: {provenance(one.attrs)}." for one in used)),
         Figure(
-            "Ground acceleration, velocity and displacement along x (after the paper's Fig. 5)"
+            "Ground acceleration, velocity and displacement along x"
             + ("; dashed: end of the window that the cases simulate." if any(cut.values()) else "."),
             svg_of(plot_motions, used, cut),
         ),

@@ -7,17 +7,19 @@ from blockshake.study.calibration.section import calibration
 from blockshake.study.comparison.section import models
 from blockshake.study.extension.section import extension
 from blockshake.study.fragility.section import fragility
-from blockshake.study.report.closing_sections import checks, limits, origin, timings
+from blockshake.study.report.answer import answer
+from blockshake.study.report.closing_sections import limits, origin
 from blockshake.study.report.content import load_content
-from blockshake.study.report.opening_sections import motions, structures, summary
+from blockshake.study.report.opening_sections import figures, motions, structures
 from blockshake.study.report.result_sections import responses
 from blockshake.study.sampling.section import samples
 from blockshake.study.sensitivity.section import sensitivities
-from blockshake.study.statements.section import findings, statements
+from blockshake.study.statements.section import findings
 from blockshake.study.stiffness.section import stiffness
 
 _SECTIONS = (
-    summary,
+    answer,
+    figures,
     structures,
     motions,
     samples,
@@ -27,15 +29,10 @@ _SECTIONS = (
     models,
     sensitivities,
     calibration,
-    statements,
     extension,
-    checks,
-    timings,
     limits,
     origin,
 )
-# these judge the study as a whole, or several cases
-_NOT_OF_A_CASE = (statements, extension)
 
 
 def make_report(study, results, logs, html, pdf, paper):
@@ -73,7 +70,6 @@ def make_case_report(study, case, results, logs, html, pdf):
 
 def compose(content):
     """Document of the content of a study or of one of its cases."""
-    sections = [section for section in _SECTIONS if not (content.only and section in _NOT_OF_A_CASE)]
     return numbered(
         Document(
             title=f"blockshake: {content.study['name']}" + (f", {content.only}" if content.only else ""),
@@ -83,6 +79,11 @@ def compose(content):
                 for name in ("project", "author", "date")
                 if content.study.get(name)
             ),
-            sections=tuple(made for section in sections if (made := section(content)) is not None),
+            sections=tuple(
+                made
+                for section in _SECTIONS
+                # the changes by a cause are those of a pair of cases
+                if not (content.only and section is extension) and (made := section(content)) is not None
+            ),
         )
     )

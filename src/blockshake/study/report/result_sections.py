@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.pages.blocks import Figure, Heading, Section, Table, Text
 from blockshake.pages.drawing import svg_of
-from blockshake.pages.rows import face_markers, main_bodies
+from blockshake.pages.rows import face_markers
 from blockshake.pages.wording import (
     SHOWN_QUANTILES,
     given,
@@ -21,8 +21,6 @@ from blockshake.study.ensembles.outcomes import count_outcomes, shortfall
 from blockshake.study.report.joint_blocks import joint_blocks
 from blockshake.study.report.moving import moving_samples, plot_still, usual_magnification
 from blockshake.study.sensitivity.findings import quiet_markers
-
-_PAPER_FIGURES = {f"configuration-{index}": 10 + index for index in (1, 2, 3, 4)}
 
 
 def responses(content):
@@ -43,22 +41,17 @@ def responses(content):
 
 def _response(case, motion):
     markers = face_markers(case.structure)
-    main = main_bodies(case.structure, markers)
     envelopes = {model: one.envelope for model, one in case.responses.items()}
-    paper = (
-        f" (after the paper's Fig. {_PAPER_FIGURES[case.name]})"
-        if case.name in _PAPER_FIGURES and case.settings["structure"] == case.name
-        else ""
-    )
-    some = "" if len(main) == len(markers) else "; all blocks are in the next figure"
+    blocks, marked = int((~case.structure.driven).sum()), len(markers)
+    every = "every block" if marked == blocks else f"the {marked} of {blocks} blocks that have a marker"
 
-    def figure(bodies, frame, caption):
-        chosen = [markers[body] for body in bodies]
-        shown = envelopes, case.measured, chosen, bodies, frame, case.synthetic
+    def figure(frame, caption):
+        shown = envelopes, case.measured, list(markers.values()), list(markers), frame, case.synthetic
         return Figure(
             caption, svg_of(plot_displacements, *shown), interactive=interactive_displacements(*shown)
         )
 
+    beside = f"{case.name}: displacement in the inertial frame, in which the coverage is read."
     return [
         Heading(case.title, f"response-{case.name}"),
         Text(
@@ -68,14 +61,11 @@ def _response(case, motion):
         *_early_end(case, motion),
         *([unfinished] if (unfinished := unfinished_table(case)) else []),
         *_lines(case, markers.values()),
-        figure(main, "inertial", f"{case.name}: displacement in the inertial frame{paper}{some}."),
+        figure("slab", f"{case.name}: displacement relative to the slab's marker, {every}."),
         *_moving(case),
         *block_tables(case),
-        *([] if case.measured is None else [coverage_table(case)]),
-        figure(
-            list(markers), "slab", f"{case.name}: displacement relative to the slab's marker, every block."
-        ),
         *joint_blocks(case),
+        *([] if case.measured is None else [figure("inertial", beside), coverage_table(case)]),
     ]
 
 

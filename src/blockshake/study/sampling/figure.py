@@ -41,33 +41,6 @@ def plot_samples(design, distributions):
     return figure
 
 
-def plot_correlation(correlation, labels):
-    """Figure of the correlation reached between the labelled variables, as numbers on a shaded square [1]."""
-    correlation = np.asarray(correlation, dtype=float)
-    figure = new_figure(0.105, 0.15)
-    axes = figure.subplots()
-    axes.grid(False)
-    picture = np.ma.masked_where(np.eye(len(labels), dtype=bool), correlation)
-    limit = max(float(np.abs(picture).max()), 0.05) if picture.count() else 1.0
-    shade = axes.pcolormesh(picture, cmap="PuOr", vmin=-limit, vmax=limit, edgecolors="white", linewidth=0.5)
-    for row, column in np.ndindex(correlation.shape):
-        if row != column:
-            value = correlation[row, column]
-            dark = abs(value) > 0.7 * limit
-            axes.text(
-                column + 0.5, row + 0.5, f"{value:.3f}", ha="center", va="center", fontsize=5.5,
-                color="white" if dark else "black",
-            )  # fmt: skip
-    centres = np.arange(len(labels)) + 0.5
-    axes.set_yticks(centres, labels)
-    axes.set_xticks(centres, labels, rotation=40, ha="right", rotation_mode="anchor")
-    axes.invert_yaxis()
-    bar = figure.colorbar(shade, ax=axes, label="correlation [1]")
-    bar.outline.set_linewidth(0.5)
-    bar.solids.set(rasterized=False, edgecolor="face")
-    return figure
-
-
 def bin_count(size):
     """Bins of a histogram of this many samples: their square root, up, and one."""
     return int(np.ceil(np.sqrt(size))) + 1

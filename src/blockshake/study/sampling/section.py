@@ -1,42 +1,30 @@
-"""Section on the samples: histograms, moments, correlation."""
+"""Section on the samples: histograms and moments."""
 
 from blockshake.pages.blocks import Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.units import printed
 from blockshake.pages.wording import model_label, number, parameter_label, percent
 from blockshake.study.sampling.distributions import parameter_unit
-from blockshake.study.sampling.figure import plot_correlation, plot_samples
+from blockshake.study.sampling.figure import plot_samples
 from blockshake.study.sampling.sample_parameters import unused_variables
 
 
 def samples(content):
-    """The design: histograms, moments, correlation."""
+    """The design: histograms and moments."""
     summary = content.design_summary
-    target = (
-        "none" if content.study["ensemble"].get("correlation") is None else "as given in the configuration"
-    )
+    target = "none" if content.study["ensemble"].get("correlation") is None else "that of the study"
     blocks = (
         Text(
             f"Latin hypercube of {summary['size']} samples, seed {summary['seed']}; each stratum is represented by its "
-            f"{summary['stratum']}.{_without_use(content)}"
+            f"{summary['stratum']}. Correlation asked for: {target}; the {summary['correlation_kind']} correlation "
+            f"differs from it by {number(summary['largest_correlation_error'])} at most.{_without_use(content)}"
         ),
         Figure(
-            "Histograms of the samples and target densities (after the paper's Fig. 8).",
+            "Histograms of the samples and target densities.",
             svg_of(plot_samples, content.design, content.distributions),
         ),
         _table(content),
         *([Items(tuple(fewer))] if (fewer := _fewer_samples(content)) else []),
-        Figure(
-            f"{summary['correlation_kind'].capitalize()} correlation reached between the variables; asked for: "
-            f"{target}. Difference from the target over the pairs: {number(summary['rms_correlation_error'])} rms, "
-            f"{number(summary['largest_correlation_error'])} at most.",
-            svg_of(
-                plot_correlation,
-                summary["correlation"],
-                [parameter_label(one) for one in content.distributions],
-            ),
-            0.15,
-        ),
     )
     return Section("Samples", "samples", blocks)
 

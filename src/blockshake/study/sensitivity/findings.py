@@ -123,8 +123,7 @@ def sentence(result, body, marker, noise):
             "a marker: the envelope is a line and there is nothing to explain."
         )
     words = (
-        f"the samples of {body} differ by {millimetres(history['spread'])} mm {spread}. "
-        f"{_explained(history)} {_seconds(result.sel(marker=marker), noise)}"
+        f"the samples of {body} differ by {millimetres(history['spread'])} mm {spread}. {_explained(history)}"
     )
     peak = result.sel(quantity="peak", marker=marker)
     if not is_known(peak, "rank_correlation"):
@@ -159,22 +158,6 @@ def _steered(peak):
         "No variable is shown to steer the peak: the largest partial rank correlation, "
         f"{influence_words(answer.ranked[0])}, is within the level of chance, {answer.chance:.2f}."
     )
-
-
-def _seconds(result, noise):
-    """Seconds in which a variable's share is beyond chance, of those with a spread of at least the noise [m]."""
-    chance, loud, said = float(result["window_first_order_chance"]), result["window_spread"] >= noise, []
-    for name in result["parameter"].values:
-        share = result["window_first_order"].sel(parameter=name).where(loud)
-        beyond = result["window"].values[share.values > chance]
-        if len(beyond):
-            said.append(
-                f"{parameter_label(str(name))} in {len(beyond)} (first about {beyond[0]:.1f} s, last "
-                f"{beyond[-1]:.1f} s, at most {float(share.max()):.2f})"
-            )
-    if not said:
-        return f"In no single second is any share beyond chance ({chance:.2f})."
-    return f"Of the {int(loud.sum())} seconds one by one, beyond chance ({chance:.2f}): {', '.join(said)}."
 
 
 def influence_words(one):

@@ -1,8 +1,7 @@
-"""Section on the statements of the paper, one by one, and the same as values for other pages."""
+"""Findings of a study on the statements of the paper, one by one, as values for the page docs/results/the-paper.md."""
 
 from dataclasses import replace
 
-from blockshake.pages.blocks import Heading, Section, Table, Text
 from blockshake.pages.wording import given, model_label
 from blockshake.simulation.models import MODELS
 from blockshake.study.comparison.tables import other_settings_table
@@ -10,7 +9,6 @@ from blockshake.study.statements.statement import PaperVerdict
 from blockshake.study.statements.table import STATEMENTS
 
 HEADER = ("Place", "Statement of the paper", "Verdict", "Finding")
-_WIDTHS = (6, 10, 5, 25)
 
 
 def judge_statements(content):
@@ -71,28 +69,3 @@ def findings(content):
         "other_settings": prices and [prices.header, *prices.rows],
         "findings": {heading: list(map(list, rows)) for heading, rows in judge_statements(content).items()},
     }
-
-
-def statements(content):
-    """The paper, statement by statement; None where no structure of the study is one of the paper's."""
-    rows_by_heading = judge_statements(content)
-    if not rows_by_heading:
-        return None
-    blocks = [
-        Text(
-            "Zhou et al. (2023), statement by statement, in the words of this program. Met: the study at hand finds "
-            "or does the same. Not met: it finds or does something else. Cannot be judged: the study lacks the model, "
-            "the case or the real measurement that the statement hangs on. A synthetic test judges no statement about "
-            "the real specimens; the synthetic tests that ship are runs of LS-DEM with an effect hidden in them, "
-            "none of contact dynamics. The numbers of a finding are computed from this study. Statements that no study "
-            "decides, and departures from the paper: docs/results/the-paper.md."
-        ),
-        Text(count_words(rows_by_heading)),
-    ]
-    for heading, rows in rows_by_heading.items():
-        key = heading.lower().replace(" ", "-").replace(",", "")
-        blocks += [
-            Heading(heading, f"paper-{key}"),
-            Table(f"{heading}: findings of this study.", HEADER, rows, "llll", _WIDTHS),
-        ]
-    return Section("The paper, statement by statement", "paper", tuple(blocks))

@@ -29,7 +29,7 @@ def stiffness(content):
             Figure(
                 "Displacement of the blocks of the tower after a step of velocity of "
                 f"{given(1e3 * calibrated.waves.attrs['step_velocity'])} mm/s at its base, nominal parameters{of}; "
-                "dots: arrivals (after the paper's Fig. 9).",
+                "dots: arrivals.",
                 svg_of(plot_waves, calibrated.waves),
             ),
             _speeds(calibrated.waves, of),
@@ -61,7 +61,7 @@ def _stiffness_of_samples(stiffness, of):
     caption = f"Stiffness per area of the {len(stiffness)} samples{of}"
     mean, spread = stiffness.mean(), stiffness.max() - stiffness.min()
     if (spread > _ALIKE * mean).any():
-        return Figure(f"{caption} (after the paper's Fig. 10).", svg_of(plot_stiffness, stiffness))
+        return Figure(f"{caption}.", svg_of(plot_stiffness, stiffness))
     values = []
     for name, value in mean.items():
         factor, unit = printed(parameter_unit(name))

@@ -1,0 +1,177 @@
+"""A study run by the workflow in any folder: what `blockshake study` starts."""
+
+import copy
+import os
+import re
+import sys
+import time
+from pathlib import Path
+
+import yaml
+
+from blockshake.errors import InputError
+from blockshake.files import check_output, load_yaml, write_text
+from blockshake.jit import CACHE_FOLDER
+from blockshake.own_files.run_workflow import WorkflowError, cores_of, run_workflow, workflow_command
+from blockshake.simulation.models import MODELS
+from blockshake.study.config import load_config
+from blockshake.working_folder import hold
+
+_SAMPLE = re.compile(r"^(\S+) (\S+) sample (\d+), (?:kept|simulated): .*?(?:; took ([\d.e+]+) s)?$")
+_STEPS = re.compile(r"^(\d+) of (\d+) steps \((\d+)%\) done$")
+_END = re.compile(r"^(Not finished\.|blockshake: )")
+_PERIOD = 5.0  # s, at least, between two lines of progress
+_LAST = 15  # lines of a workflow that ends without a word of its own
+_FILES = ("structure", "motion")
+
+
+def run_study(file, output=None, cores=None, case=None, say=print):
+    """Run a study, or go on with it, and make its report.
+
+    Parameters
+    ----------
+    file : str or path
+        The study, YAML. Paths in it count from the current folder.
+    output : str or path, optional
+        Folder in which ``results``, ``reports`` and ``logs`` are made, with a copy of the study from there; the current
+        folder by default.
+    cores : int, optional
+        All by default.
+    case : str, optional
+        Name of the one case that is run and reported.
+    say : callable
+        Gets lines of progress.
+
+    Returns
+    -------
+    list of Path
+        The report as HTML and PDF, and the folder of the results.
+
+    Raises
+    ------
+    InputError
+        A study that cannot be run, a case or a number of cores that is none, or another command works in the folder.
+    WorkflowError
+        A job failed: the lines before say why.
+    """
+    config, cores, begin = load_config(file), cores_of("study", cores), time.monotonic()
+    names = [one.name for one in config.cases]
+    if case is not None and case not in names:
+        raise InputError(file, "--case", f"expected one of {', '.join(names)}, not '{case}'")
+    folder, path = Path(output or ".").resolve(), Path(file).resolve()
+    elsewhere = folder != Path.cwd()
+    if elsewhere:
+        path = check_output(folder / f"{config.name}.yaml")
+        folder.mkdir(parents=True, exist_ok=True)
+    os.close(hold(folder))  # the workflow holds it again
+    if elsewhere:
+        moved = yaml.safe_dump(_seen_from(folder, load_yaml(file)), sort_keys=False, allow_unicode=True)
+        write_text(path, moved)
+    report = folder / "reports" / "-".join(filter(None, (config.name, case)))
+    heard = _Progress(config, cores, case, say)
+    say(f"{config.name}: {heard.total} runs of {', '.join(config.models)}, on {cores} cores, in {folder}")
+    if not CACHE_FOLDER.exists():
+        say("the models are compiled first, once on this machine: one to three minutes each")
+    target = [f"reports/{report.name}.html"] if case else ["all"]
+    try:
+        run_workflow(workflow_command(cores, folder, path, *target), heard)
+    except WorkflowError as stopped:
+        if not heard.ending:
+            sys.stderr.write("\n".join([*heard.last, ""]))
+        raise stopped from None
+    shown = [report.with_suffix(".html"), report.with_suffix(".pdf"), folder / "results" / config.name]
+    shown = [Path(os.path.relpath(one)) for one in shown]
+    say(f"{config.name}: done in {_minutes(time.monotonic() - begin)}; {shown[0]}, {shown[1]}, {shown[2]}/")
+    return shown
+
+
+def _seen_from(folder, study):
+    """The mapping of a study with paths that count from another folder than the current one."""
+
+    def moved(name):
+        return os.path.relpath(name, folder) if isinstance(name, str) and Path(name).exists() else name
+
+    study = copy.deepcopy(study)
+    for case in study["cases"]:
+        case |= {key: moved(case[key]) for key in _FILES}
+        case.setdefault("name", Path(case["structure"]).stem)
+        if case.get("measured"):
+            case["measured"]["campaign"] = moved(case["measured"]["campaign"])
+    if study["ensemble"].get("correlation"):
+        study["ensemble"]["correlation"] = moved(study["ensemble"]["correlation"])
+    for key, listed in (("ladder", "motions"), ("diagnosis", "campaigns")):
+        if (study.get(key) or {}).get(listed):
+            study[key][listed] = [moved(name) for name in study[key][listed]]
+    return study
+
+
+class _Progress:
+    """Hears a workflow, and says how far every case is and how long the rest takes.
+
+    The time left is that of the samples that are not done, by the mean cost of the samples of the same case and model,
+    else of the model per second simulated. Where a model has no sample yet, the rest takes longer than is said.
+    """
+
+    def __init__(self, config, cores, only, say):
+        self.cores, self.say, self.said = cores, say, time.monotonic()
+        cases = [case for case in config.cases if only in (None, case.name)]
+        self.durations = {case.name: case.duration for case in cases}
+        self.wanted = {
+            (case.name, model): config.samples(model, case.name) for case in cases for model in config.models
+        }
+        self.done = {pair: set() for pair in self.wanted}
+        self.costs = {pair: [] for pair in self.wanted}
+        self.total, self.ending, self.last = sum(self.wanted.values()), False, []
+
+    def __call__(self, line):
+        self.last = [*self.last[1 - _LAST :], line]
+        self.ending = self.ending or bool(_END.match(line))
+        if self.ending:
+            sys.stderr.write(f"{line}\n")
+        if found := _SAMPLE.match(line):
+            pair = found[1], found[2]
+            if pair in self.done:
+                self.done[pair].add(int(found[3]))
+                self.costs[pair] += [float(found[4])] if found[4] else []
+                self._tell(pair)
+        elif (found := _STEPS.match(line)) and self._is_due() and not self._runs_left():
+            self._say(f"all runs are done; {found[1]} of {found[2]} jobs")
+
+    def _is_due(self):
+        return time.monotonic() - self.said > _PERIOD
+
+    def _runs_left(self):
+        return self.total - sum(map(len, self.done.values()))
+
+    def _tell(self, pair):
+        count, wanted = len(self.done[pair]), self.wanted[pair]
+        if count == wanted or self._is_due():
+            share = f"{self.total - self._runs_left()} of {self.total} runs"
+            label = MODELS[pair[1]].label
+            self._say(f"{pair[0]}, {label}: {count} of {wanted} samples; {share}; {self._left()}")
+
+    def _say(self, words):
+        self.said = time.monotonic()
+        self.say(words)
+
+    def _left(self):
+        """Time that the samples left will take, in words."""
+        seconds, unknown = 0.0, False
+        for (case, model), count in self.wanted.items():
+            left = count - len(self.done[case, model])
+            if left <= 0:
+                continue
+            own = self.costs[case, model]
+            rates = own or [
+                cost * self.durations[case] / self.durations[other]
+                for (other, name), costs in self.costs.items()
+                if name == model
+                for cost in costs
+            ]
+            unknown = unknown or not rates
+            seconds += left * sum(rates) / max(len(rates), 1)
+        return f"{'more than' if unknown else 'about'} {_minutes(seconds / self.cores)} left"
+
+
+def _minutes(seconds):
+    return f"{seconds:.0f} s" if seconds < 90.0 else f"{seconds / 60.0:.0f} min"

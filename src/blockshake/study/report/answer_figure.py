@@ -1,0 +1,59 @@
+"""Picture of the first page: the structures, and the block that moves farthest by every model."""
+
+from blockshake.measurement.sensors.markers import marker_position
+from blockshake.pages.drawing import BLUE, GREEN, MEASURED, ORANGE, RED, new_figure
+from blockshake.pages.scene.projection import Scene
+from blockshake.pages.scene.structure_picture import draw_blocks
+from blockshake.pages.wording import model_label
+
+_COLORS = (BLUE, ORANGE, GREEN, RED)
+_HEIGHT = 0.046  # m of paper
+_CURVES = 2.2  # width of the curves over that of the structures
+
+
+def plot_answer(structures, case, marker):
+    """Figure of structures in space, and of a marker's displacement along x relative to the slab.
+
+    ``structures``: list of `Structure`; ``case``: `ReportedCase`, whose structure is among them. By model, the median
+    of the samples and a band from the smallest to the largest at each time; the measured curve is dashed.
+    """
+    figure = new_figure(_HEIGHT)
+    across = min(len(structures), 2)
+    left, right = figure.subfigures(1, 2, width_ratios=[1.0, _CURVES])
+    drawn = left.subplots(-(-len(structures) // across), across, squeeze=False)
+    for axes in drawn.flat:
+        axes.set_axis_off()
+    for axes, structure in zip(drawn.flat, structures, strict=False):
+        scene, pose = Scene(structure, "3d"), (structure.position, structure.orientation)
+        draw_blocks(axes, scene, structure, *pose)
+        if structure.same_as(case.structure):
+            row = [one.name for one in structure.file.markers].index(marker)
+            at = scene.seen(marker_position(structure, *pose)[row])
+            axes.plot(
+                at[0], at[1], "o", color=RED, markersize=3.5, markeredgecolor="white", markeredgewidth=0.5
+            )
+        axes.set_aspect("equal")
+        axes.autoscale_view()
+    curves = right.subplots()
+    for (model, one), color in zip(case.responses.items(), _COLORS, strict=False):
+        at = one.envelope.sel(frame="slab", marker=marker, axis="x")
+        bounds = (1e3 * at["marker_envelope"].sel(bound=bound) for bound in ("lower", "upper"))
+        curves.fill_between(at["time"], *bounds, color=color, alpha=0.25, linewidth=0.0)
+        curves.plot(
+            at["time"],
+            1e3 * at["marker_displacement"].sel(quantile=0.5),
+            color=color,
+            label=model_label(model),
+        )
+    if case.measured is not None and marker in case.measured["marker"].values:
+        measured = case.measured["displacement"].sel(frame="slab", marker=marker)
+        curves.plot(case.measured["time"], 1e3 * measured, label=case.curve_word, **MEASURED)
+    curves.set(xlabel="time [s]", ylabel="from its place [mm]", xlim=(0.0, case.settings["duration"]))
+    right.legend(
+        *curves.get_legend_handles_labels(),
+        loc="outside upper right",
+        ncols=5,
+        fontsize=6.0,
+        columnspacing=1.0,
+    )
+    return figure

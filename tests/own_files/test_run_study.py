@@ -1,0 +1,188 @@
+"""`blockshake study`: errors with the valid names, progress by case, the folder of the results, one closing line."""
+
+import os
+from pathlib import Path
+
+import pytest
+import yaml
+
+from blockshake.cli import main
+from blockshake.files import HOME, load_yaml
+from blockshake.own_files import run_study as of_study
+from blockshake.own_files.run_workflow import WorkflowError, workflow_command
+from blockshake.study.config import load_config
+from blockshake.working_folder import hold
+
+STUDY = {
+    "name": "mine",
+    "description": "two cases of one structure",
+    "models": {"ls-dem": {"time_step": 5e-5}, "nscd-rigid": {"time_step": 1e-3}},
+    "cases": [
+        {"name": name, "structure": "own/block.yaml", "motion": "alkion", "scale": scale, "duration": duration}
+        for name, scale, duration in (("weak", 1.0, 1.0), ("strong", 2.0, 2.0))
+    ],
+    "ensemble": {"size": 10, "seed": 1, "distributions": {
+        "friction.stone.stone": {"distribution": "lognormal", "mean": 0.7, "cov": 0.1},
+    }},
+}  # fmt: skip
+BLOCK = """
+name: block
+description: a block on a slab
+materials: {stone: {density: 2000.0, youngs_modulus: 2.0e10, poisson_ratio: 0.2}}
+shapes: {slab: {box: [2, 2, 0.2]}, block: {box: [0.5, 0.5, 1.0]}}
+bodies:
+  - {name: slab, shape: slab, material: stone, position: [0, 0, -0.1], driven: true}
+  - {name: block, shape: block, material: stone, position: [0, 0, 0.5]}
+friction: [{pair: [stone, stone], coefficient: 0.7}]
+markers: [{name: s, body: slab, position: [1, 0, 0]}, {name: b, body: block, position: [0, 0, 0.5]}]
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A user's folder with a study and a structure, which is the current one."""
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "block.yaml").write_text(BLOCK)
+    (tmp_path / "study.yaml").write_text(yaml.safe_dump(STUDY))
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def workflow(monkeypatch):
+    """Commands of workflows that would have run; each says these lines."""
+    commands, lines = [], []
+
+    def run(command, hear):
+        commands.append(command)
+        for line in lines:
+            hear(line)
+        if lines and lines[-1].startswith("blockshake:"):
+            raise WorkflowError(2)
+
+    monkeypatch.setattr(of_study, "run_workflow", run)
+    return commands, lines
+
+
+def sample(case, model, number, took=None):
+    ended = "kept: completed" if took is None else f"simulated: completed; took {took} s"
+    return f"{case} {model} sample {number}, {ended}"
+
+
+def test_a_study_runs_where_the_user_is_and_says_where_all_is(folder, workflow, capsys):
+    assert main(["study", "study.yaml", "--cores", "3"]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said[0] == f"mine: 40 runs of ls-dem, nscd-rigid, on 3 cores, in {folder}"
+    assert said[-1].endswith("; reports/mine.html, reports/mine.pdf, results/mine/")
+    ((*_, command),) = (workflow[0],)
+    assert command == workflow_command(3, folder, folder / "study.yaml", "all")
+    assert command[command.index("--snakefile") + 1] == str(HOME / "Snakefile")
+
+
+def test_progress_is_told_by_case_with_the_time_left(folder, workflow, capsys):
+    workflow[1].extend(
+        [
+            *(sample("weak", "nscd-rigid", number, 2.0) for number in range(10)),
+            *(sample("weak", "ls-dem", number, 5.0) for number in range(10)),
+            "30 of 60 steps (50%) done",
+            *(sample("strong", "ls-dem", number) for number in range(10)),
+        ]
+    )
+    assert main(["study", "study.yaml", "--cores", "2"]) == 0
+    told = [line for line in capsys.readouterr().out.splitlines() if "samples" in line]
+    # nothing is known of LS-DEM; strong runs last twice as long as weak ones: 10 x 4 s on 2 cores
+    assert told[0] == "weak, NSCD rigid: 10 of 10 samples; 10 of 40 runs; more than 20 s left"
+    # and 10 x 10 s by LS-DEM
+    assert told[1] == "weak, LS-DEM: 10 of 10 samples; 20 of 40 runs; about 70 s left"
+    # samples that were kept cost nothing
+    assert told[2] == "strong, LS-DEM: 10 of 10 samples; 30 of 40 runs; about 20 s left"
+    assert len(told) == 3
+
+
+def test_a_twin_counts_no_sample_twice(folder):
+    heard = []
+    progress = of_study._Progress(load_config("study.yaml"), 1, None, heard.append)
+    for _ in range(2):
+        progress(sample("weak", "ls-dem", 0, 1.0))
+    assert len(progress.done["weak", "ls-dem"]) == 1
+
+
+def test_the_study_in_the_very_folder_of_the_output_is_left_as_it_is(folder, workflow):
+    before = (folder / "study.yaml").read_bytes()
+    assert main(["study", "study.yaml", "--output", "."]) == 0
+    assert (folder / "study.yaml").read_bytes() == before
+    assert not (folder / "mine.yaml").exists()
+
+
+def test_one_case_is_run_and_reported_alone(folder, workflow, capsys):
+    assert main(["study", "study.yaml", "--case", "strong"]) == 0
+    assert "reports/mine-strong.html" in workflow[0][0]
+    said = capsys.readouterr().out
+    assert "mine: 20 runs" in said
+    assert said.endswith("; reports/mine-strong.html, reports/mine-strong.pdf, results/mine/\n")
+
+
+def test_another_folder_gets_the_study_with_paths_from_there(folder, workflow, capsys):
+    assert main(["study", "study.yaml", "--output", "out/first"]) == 0
+    there = folder / "out" / "first"
+    moved = load_yaml(there / "mine.yaml")
+    assert [case["structure"] for case in moved["cases"]] == ["../../own/block.yaml"] * 2
+    assert [case["motion"] for case in moved["cases"]] == ["alkion"] * 2  # a shipped name is no path
+    assert workflow[0][0] == workflow_command(os.cpu_count(), there, there / "mine.yaml", "all")
+    assert "out/first/reports/mine.html" in capsys.readouterr().out.splitlines()[-1]
+    os.chdir(there)
+    assert load_config("mine.yaml").name == "mine"
+    assert not (folder / "results").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["nowhere.yaml"], "nowhere.yaml"),
+        (
+            ["study.yaml", "--case", "middle"],
+            "study.yaml: --case: expected one of weak, strong, not 'middle'",
+        ),
+        (["study.yaml", "--cores", "0"], "expected a whole number from 1, not 0"),
+        (["own/block.yaml"], "own/block.yaml"),
+        (["study.yaml", "--output", "/dev/null/x"], "/dev/null"),
+    ],
+)
+def test_bad_input_is_one_line_and_makes_nothing(folder, workflow, capsys, arguments, message):
+    before = sorted(folder.rglob("*"))
+    assert main(["study", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert message in error
+    assert error.count("\n") == 1
+    assert workflow[0] == []
+    assert sorted(folder.rglob("*")) == before
+
+
+def test_a_second_study_in_the_folder_is_refused(folder, workflow, capsys):
+    held = hold(folder)
+    assert main(["study", "study.yaml"]) == 2
+    os.close(held)
+    assert "expected a folder in which no other study or diagnosis runs" in capsys.readouterr().err
+    assert workflow[0] == []
+
+
+def test_the_last_lines_of_a_workflow_that_fails_are_its_reason(folder, workflow, capsys):
+    workflow[1].extend(
+        ["Select jobs", "Not finished. All is kept.", "  job: one", "blockshake: a file is missing"]
+    )
+    assert main(["study", "study.yaml"]) == 2
+    assert capsys.readouterr().err.splitlines() == workflow[1][1:]
+
+
+def test_a_workflow_that_dies_without_a_word_shows_its_last_lines(folder, monkeypatch, capsys):
+    def run(command, hear):
+        hear("Killed")
+        raise WorkflowError(1)
+
+    monkeypatch.setattr(of_study, "run_workflow", run)
+    assert main(["study", "study.yaml"]) == 1
+    assert capsys.readouterr().err == "Killed\n"
+
+
+def test_the_shipped_template_names_the_command():
+    assert "blockshake study FILE" in Path(HOME, "config", "templates", "study.yaml").read_text()
