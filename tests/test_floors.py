@@ -49,7 +49,7 @@ ROOMS_OF_STUDY = [
 MOST_MODULES = 15
 WITH_ROOMS = ("diagnosis", "study")  # whose folders have a budget each
 MOST_LINES = {
-    ".": 2130, "tables": 610, "statistics": 370, "geometry": 2490, "dynamics": 2795, "solvers": 8610,
+    ".": 2250, "tables": 610, "statistics": 370, "geometry": 2510, "dynamics": 2795, "solvers": 8690,
     "measurement": 4050, "simulation": 1590, "parity": 2265, "forces": 2160, "effects": 990, "pages": 1330,
     "study": 895, "study/sampling": 1010, "study/ensembles": 1315, "study/stiffness": 590,
     "study/comparison": 615, "study/fragility": 525, "study/sensitivity": 845, "study/calibration": 1090,

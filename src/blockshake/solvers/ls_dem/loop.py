@@ -87,10 +87,10 @@ def integrate(assembly, times, pause, progress, candidates, joints, record):
     searched = False
     while True:
         record = with_room(record, len(joints.slip))
+        loads = no_loads(n_bodies, joints)
         code, culprit = _advance(
-            assembly, times, pause, progress, candidates, record, searched, ground, turn, external,
-            no_loads(n_bodies, joints),
-        )  # fmt: skip
+            assembly, times, pause, progress, candidates, record, searched, ground, turn, external, loads
+        )
         if code != _LISTS_EXPIRED:
             return code, culprit, candidates, joints, record
         candidates, joints = find_candidates(
