@@ -13,8 +13,8 @@ one is killed: two that save different signatures of a kernel take the same file
 to the machine code of the other. Nor does it see that a file was cut or altered. Here each signature therefore has a
 file of its own, with a digest of its content; a file that is not whole is compiled anew.
 
-What replaces or extends private parts of Numba, `IndexDataCacheFile` and `JITCodeLibrary`, is held by
-`tests/test_jit.py`, which names the version that it was written for.
+Two private parts of Numba are replaced or extended here, `IndexDataCacheFile` and `JITCodeLibrary`; `tests/test_jit.py`
+names the version that this was written for, and one that lacks them.
 """
 
 import functools
