@@ -179,12 +179,19 @@ def joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
             R = poses.rotation[other]
             for packet in range(candidates.first[2 * pair + side], candidates.first[2 * pair + side + 1]):
                 node = candidates.packets[packet]
-                row = packet - candidates.first[2 * pair]
+                located = candidates.located[packet - candidates.first[2 * pair]]
                 for lane in range(LANES):
-                    phi = candidates.located[row, PHI + lane]
+                    phi = located[PHI + lane]
                     if not phi < closed:
                         continue
-                    n = matrix_product(R, triple(candidates.located, row, NORMAL, lane))
+                    n = matrix_product(
+                        R,
+                        (
+                            located[NORMAL + lane],
+                            located[NORMAL + LANES + lane],
+                            located[NORMAL + 2 * LANES + lane],
+                        ),
+                    )
                     place = triple(candidates.packets, packet, PLACE, lane)
                     arm = matrix_product(R, difference(place, surfaces.offset[other]))
                     if phi >= 0.0 and abs(dot(n, down)) < 0.5:
