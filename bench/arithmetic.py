@@ -35,7 +35,7 @@ def count_operations():
         ``operations_per_node``, ``packed_share`` of them in vector instructions, ``vector_bits``
         of the widest and ``gathers``: whether the loop looks up a grid.
     """
-    compiled = numba.njit(error_model="numpy")(contact_forces_into.py_func)
+    compiled = numba.njit(error_model="numpy")(contact_forces_into)
     compiled(*assembled_stack(LsDemParameters()))
     return [loop for loop in map(operations, _innermost_loops(compiled)) if loop is not None]
 

@@ -6,6 +6,7 @@ from measuring import process_seconds, spread
 
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import load_structure
+from blockshake.jit import kernel
 from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_candidates
 from blockshake.solvers.ls_dem.contact.contact_forces import contact_forces_into, no_loads
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
@@ -14,6 +15,9 @@ from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.ls_dem.progress import no_joints
 from blockshake.solvers.ls_dem.surfaces import assemble_surfaces
+
+# compiled
+contact_forces_into = kernel(contact_forces_into)
 
 STRUCTURE = "configuration-1"
 TIME_STEP = 1e-5  # s

@@ -11,7 +11,7 @@ import numba
 import numpy as np
 from measuring import spread
 
-from blockshake.jit import SOURCE_DIGEST
+from blockshake.sources import compiled_sources, source_digest
 
 _CHAIN = 100_000_002  # dependent operations: some 30 ms
 
@@ -33,7 +33,7 @@ def describe_versions():
         "python": platform.python_version(),
         **{package: version(package) for package in packages},
         "llvm": ".".join(map(str, llvmlite.binding.llvm_version_info)),
-        "kernel_source_digest": SOURCE_DIGEST,
+        "kernel_source_digest": source_digest(*compiled_sources()),
     }
 
 

@@ -2,7 +2,11 @@
 
 import numpy as np
 
+from blockshake.jit import kernel
 from blockshake.solvers.nscd.solve.gauss_seidel import contact_residual
+
+# compiled
+contact_residual = kernel(contact_residual)
 
 
 def law_residual(structure, answer, step, time_step):

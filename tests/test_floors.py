@@ -51,7 +51,7 @@ ROOMS_OF_STUDY = [
 MOST_MODULES = 15
 WITH_ROOMS = ("diagnosis", "study")  # whose folders have a budget each
 MOST_LINES = {
-    ".": 2210, "tables": 610, "statistics": 375, "geometry": 2535, "dynamics": 2800, "solvers": 8610,
+    ".": 2335, "tables": 610, "statistics": 375, "geometry": 2560, "dynamics": 2800, "solvers": 8700,
     "measurement": 4175, "simulation": 1800, "parity": 2265, "forces": 2160, "effects": 990, "pages": 1395,
     "study": 950, "study/sampling": 1050, "study/ensembles": 1495, "study/stiffness": 590,
     "study/comparison": 645, "study/fragility": 525, "study/sensitivity": 870, "study/calibration": 1085,

@@ -261,7 +261,6 @@ def _simulate(options):
     from blockshake.dynamics.load_motion import load_motion, provenance
     from blockshake.dynamics.system import FINISHED
     from blockshake.geometry.structure import load_structure
-    from blockshake.jit import CACHE_FOLDER
     from blockshake.simulation.ending import ending
     from blockshake.simulation.models import part_parameters
     from blockshake.simulation.simulate import simulate_to_file
@@ -280,8 +279,6 @@ def _simulate(options):
         log.info("%s", provenance(motion.attributes))
     if Path(options.output).exists():
         log.info("%s is there and will be replaced", options.output)
-    if not CACHE_FOLDER.exists():
-        log.info("compiles the solver first, once, for one to three minutes")
     simulate_to_file(
         options.output, structure, motion, options.model, settings, options.time_step, options.duration,
         options.output_rate,

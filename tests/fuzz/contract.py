@@ -13,9 +13,9 @@ from pathlib import Path
 
 import matplotlib
 
+from blockshake.caches import kernel_folder
 from blockshake.cli import BAD_INPUT, NUMERICAL_FAILURE, main
 from blockshake.errors import InputError
-from blockshake.jit import CACHE_FOLDER
 
 LIMIT = 5.0  # s of CPU time
 MEMORY = 2 * 2**30  # bytes beyond those that the process has
@@ -75,7 +75,7 @@ class _Watch:
             self.seen.append(f"{event} {arguments}")
 
     def _own(self, path):
-        kept = self.folder, CACHE_FOLDER.resolve(), "/dev", _PICTURES
+        kept = self.folder, kernel_folder("").resolve(), "/dev", _PICTURES
         return "__pycache__" in path or any(Path(path).is_relative_to(own) for own in kept)
 
 

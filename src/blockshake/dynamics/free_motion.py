@@ -2,10 +2,10 @@
 
 from blockshake.geometry.rotations import rotation_rows, turned
 from blockshake.geometry.vectors import columns_product, matrix_product, put_into, rows_product
-from blockshake.jit import borrowing_kernel, inline_kernel
+from blockshake.jit import borrowing_kernel
 
 
-@inline_kernel
+@borrowing_kernel
 def _spin(inverse_inertia, q, angular_momentum):
     """Angular velocity ``R J^-1 R^T L`` of one body, see `spin_into`."""
     R = rotation_rows(q)

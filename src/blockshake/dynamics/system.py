@@ -143,7 +143,7 @@ class Trajectory(Rows):
 
 
 def assemble_bodies(structure):
-    """Bodies, their state at the start and their stoppers, from a structure."""
+    """Bodies, their state at the start and their stoppers, None without any, from a structure."""
     free = ~structure.driven
     inverse_mass = np.where(free, 1.0 / structure.mass, 0.0)
     inverse_inertia = np.linalg.inv(structure.inertia) * free[:, None, None]
@@ -168,6 +168,8 @@ def assemble_bodies(structure):
 
 def _assemble_stoppers(structure):
     file = structure.file
+    if not file.stoppers:
+        return None
     return Stoppers(
         body=structure.carriers(file.stoppers),
         point=structure.arms(file.stoppers),

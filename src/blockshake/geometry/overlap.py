@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.jit import kernel
+from blockshake.jit import inner_kernel
 
 _MOST_AT_ONCE = 2**19  # pairs of edges, or of faces and corners, held at a time: some tens of megabytes
 
@@ -19,10 +19,10 @@ def near_pairs(solids, position, orientation, clearance):
     low = position + [points.min(axis=0) for points in corners]
     high = position + [points.max(axis=0) for points in corners]
     # plain Python: to load a structure compiles nothing
-    return find_pairs.py_func(low, high, np.zeros(len(low), dtype=bool), clearance)
+    return find_pairs(low, high, np.zeros(len(low), dtype=bool), clearance)
 
 
-@kernel
+@inner_kernel
 def find_pairs(low, high, driven, margin):
     """Pairs whose bounding boxes come within ``margin`` [m]: int64 (n_pairs, 2), sorted; not of two driven bodies.
 
@@ -31,8 +31,15 @@ def find_pairs(low, high, driven, margin):
     the neighbours of each.
     """
     n_bodies = driven.size
-    widest = np.argmax(np.array([np.ptp(low[:, axis]) for axis in range(3)]))
-    order = np.argsort(low[:, widest], kind="mergesort")
+    widest, most = 0, -1.0
+    for axis in range(3):
+        least, greatest = np.inf, -np.inf
+        for body in range(n_bodies):
+            least, greatest = min(least, low[body, axis]), max(greatest, low[body, axis])
+        if greatest - least > most:
+            widest, most = axis, greatest - least
+    order = np.argsort(low[:, widest].copy(), kind="mergesort")
+    # a pair as one number, and that not an integer, whose order would be sought by code of its own
     codes = []
     for rank in range(n_bodies):
         a = order[rank]
@@ -44,10 +51,12 @@ def find_pairs(low, high, driven, margin):
             for axis in range(3):
                 near &= low[a, axis] <= high[b, axis] + margin and low[b, axis] <= high[a, axis] + margin
             if near:
-                codes.append(min(a, b) * n_bodies + max(a, b))
-    sorted_codes = np.sort(np.array(codes)) if len(codes) > 0 else np.empty(0, np.int64)
+                codes.append(1.0 * (min(a, b) * n_bodies + max(a, b)))
+    order = np.argsort(np.array(codes), kind="mergesort") if codes else np.empty(0, np.int64)
     pairs = np.empty((len(codes), 2), np.int64)
-    pairs[:, 0], pairs[:, 1] = sorted_codes // n_bodies, sorted_codes % n_bodies
+    for pair in range(len(codes)):
+        code = np.int64(codes[order[pair]])
+        pairs[pair, 0], pairs[pair, 1] = code // n_bodies, code % n_bodies
     return pairs
 
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from blockshake.jit import borrowing_kernel, inline_kernel
+from blockshake.jit import borrowing_kernel
 
 
-@inline_kernel
+@borrowing_kernel
 def rotation_rows(q):
     """Rows of the rotation matrix of a unit quaternion (w, x, y, z), body to world, as three tuples of three."""
     w, x, y, z = q[0], q[1], q[2], q[3]
@@ -25,7 +25,7 @@ def rotation_matrix_into(q, R):
     R[2, 0], R[2, 1], R[2, 2] = third
 
 
-@inline_kernel
+@borrowing_kernel
 def turned(w, x, y, z, rx, ry, rz):
     """Unit quaternion ``w, x, y, z`` turned further by a world-frame rotation vector ``rx, ry, rz`` [rad]."""
     angle = np.sqrt(rx * rx + ry * ry + rz * rz)

@@ -90,3 +90,20 @@ def velocity_at(v, arm):
         v[1] + v[5] * arm[0] - v[3] * arm[2],
         v[2] + v[3] * arm[1] - v[4] * arm[0],
     )
+
+
+@borrowing_kernel
+def copy_into(given, out):
+    """Write an array of one to three dimensions over another one, or over the first entries of one with more room."""
+    if given.ndim == 1:
+        for i in range(given.shape[0]):
+            out[i] = given[i]
+    elif given.ndim == 2:
+        for i in range(given.shape[0]):
+            for j in range(given.shape[1]):
+                out[i, j] = given[i, j]
+    else:
+        for i in range(given.shape[0]):
+            for j in range(given.shape[1]):
+                for k in range(given.shape[2]):
+                    out[i, j, k] = given[i, j, k]

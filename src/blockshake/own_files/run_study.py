@@ -11,7 +11,6 @@ import yaml
 
 from blockshake.errors import InputError
 from blockshake.files import check_output, load_yaml, write_text
-from blockshake.jit import CACHE_FOLDER
 from blockshake.own_files.run_workflow import WorkflowError, cores_of, run_workflow, workflow_command
 from blockshake.simulation.models import MODELS
 from blockshake.study.config import load_config
@@ -70,8 +69,8 @@ def run_study(file, output=None, cores=None, case=None, say=print):
     report = folder / "reports" / "-".join(filter(None, (config.name, case)))
     heard = _Progress(config, cores, case, say)
     say(f"{config.name}: {heard.total} runs of {', '.join(config.models)}, on {cores} cores, in {folder}")
-    if not CACHE_FOLDER.exists():
-        say("the models are compiled first, once on this machine: one to three minutes each")
+    if not any((folder / "results" / "kernels").glob("*")):
+        say("models that are new to this machine are compiled first: half a minute to one minute each")
     target = [f"reports/{report.name}.html"] if case else ["all"]
     try:
         run_workflow(workflow_command(cores, folder, path, *target), heard)

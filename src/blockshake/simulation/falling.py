@@ -166,7 +166,7 @@ def _stops(structure, position, orientation, watched, base):
     """`_Support` of each body that leans on a stopper."""
     bodies, _, stoppers = assemble_bodies(structure)
     state = State(position, orientation, np.zeros_like(position), np.zeros_like(position))
-    for stop, body in enumerate(stoppers.body):
+    for stop, body in enumerate(() if stoppers is None else stoppers.body):
         reach, arm, toward = np.empty((3, 3))
         if watched[body] and closure_into(bodies, stoppers, stop, base, state, reach, arm, toward) > -_TOUCH:
             point = (position[body] + arm)[None]

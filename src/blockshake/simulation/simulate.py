@@ -9,7 +9,6 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import blockshake
-from blockshake import jit
 from blockshake.dynamics.baseline import check_window
 from blockshake.dynamics.load_motion import load_motion, plain_attributes
 from blockshake.dynamics.motion import PITCH, GroundMotion, ground_motion
@@ -26,7 +25,7 @@ from blockshake.simulation.models import model_of, split_parameters
 from blockshake.simulation.run_dataset import add_readings, effective_parameters
 from blockshake.simulation.run_parts import RunParts, reduced, write_run
 from blockshake.solvers.checkpoint import KeptRows
-from blockshake.sources import module_sources, source_digest
+from blockshake.sources import kernel_sources, module_sources, source_digest
 
 _WORST_RESIDUAL = 0.05  # a run whose energy audit misses more is not to be trusted
 
@@ -240,7 +239,7 @@ def compile_kernels(model):
     """Run a solver for a moment; the model and the digests of its compiled kernels are returned, JSON-like."""
     still = ground_motion("rest", np.array([0.0, 0.1]), {"x": np.zeros(2)}, "acceleration")
     simulate("configuration-1", still, model, duration=0.01)
-    return {"model": model, "kernels": jit.SOURCE_DIGEST, "numba": numba.__version__}
+    return {"model": model, "kernels": source_digest(*kernel_sources(model)), "numba": numba.__version__}
 
 
 def placed(structure, places):

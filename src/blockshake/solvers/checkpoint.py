@@ -10,7 +10,7 @@ import numpy as np
 
 from blockshake.errors import InputError
 from blockshake.files import replacing
-from blockshake.jit import SOURCE_DIGEST
+from blockshake.sources import compiled_sources, source_digest
 
 AT_HAND = 2**14  # rows of the record in memory: tens of MiB
 
@@ -76,7 +76,7 @@ def _rebuilt(kind, arrays):
 
 def run_key(structure, ground, parameters, record_times, time_step, *choices):
     """Digest of all that makes a run, the program included: a checkpoint serves no other."""
-    digest = hashlib.sha256(SOURCE_DIGEST.encode())
+    digest = hashlib.sha256(source_digest(*compiled_sources()).encode())
     digest.update(type(parameters).__name__.encode())
     digest.update(structure.file.model_dump_json().encode())
     digest.update(parameters.model_dump_json().encode())

@@ -4,10 +4,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.geometry.rotations import rotation_matrix_into, rotation_rows
+from blockshake.geometry.rotations import rotation_rows
 from blockshake.geometry.schema import AXES, CREEP
-from blockshake.geometry.vectors import add_impulse_into, cross, rows_product
-from blockshake.jit import kernel
+from blockshake.geometry.vectors import (
+    add_impulse_into,
+    columns_product,
+    cross,
+    difference,
+    dot,
+    put_into,
+    rows_product,
+)
+from blockshake.jit import inner_kernel
 
 
 class ExternalForces(NamedTuple):
@@ -31,8 +39,10 @@ class ExternalForces(NamedTuple):
 
 
 def assemble_external_forces(structure):
-    """External forces of a structure, bodies in the order of its file."""
+    """External forces of a structure, bodies in the order of its file; None without any, and no kernel has them."""
     forces = structure.file.external_forces
+    if not forces:
+        return None
     driven = np.flatnonzero(structure.driven)
     return ExternalForces(
         structure.carriers(forces),
@@ -46,7 +56,7 @@ def assemble_external_forces(structure):
     )
 
 
-@kernel
+@inner_kernel
 def external_wrenches_into(bodies, forces, state, time, ahead, wrench):
     """External forces on all bodies, with their moments about the mass centres.
 
@@ -79,7 +89,29 @@ def external_wrenches_into(bodies, forces, state, time, ahead, wrench):
         add_impulse_into(size, axis, arm, wrench[body])
 
 
-@kernel
+@inner_kernel
+def external_impulses_into(bodies, forces, state, time, dt, impulse):
+    """Impulses of external forces, if any, in a step of length ``dt`` around a time [s], as the wrenches above.
+
+    ``impulse`` (n_bodies, 6) is then overwritten [N s, N m s].
+    """
+    if forces is None:
+        return
+    external_wrenches_into(bodies, forces, state, time, 0.5 * dt, impulse)
+    for body in range(bodies.mass.size):
+        for axis in range(6):
+            impulse[body, axis] *= dt
+
+
+@inner_kernel
+def number_of(stoppers):
+    """How many stoppers there are, if any."""
+    if stoppers is None:
+        return np.int64(0)
+    return stoppers.body.size
+
+
+@inner_kernel
 def closure_into(bodies, stoppers, stopper, base, state, reach, arm, toward):
     """Closure of a stopper beyond its gap [m], negative while open.
 
@@ -88,15 +120,17 @@ def closure_into(bodies, stoppers, stopper, base, state, reach, arm, toward):
     of the driven body and of its own [m], ``toward`` (3,) with the signed axis as it has turned; world frame.
     """
     body = stoppers.body[stopper]
-    R, R_base, R_start = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
-    rotation_matrix_into(bodies.home_orientation[body], R)
-    rotation_matrix_into(bodies.home_orientation[base], R_start)
-    reach_start = bodies.home[body] + R @ stoppers.point[stopper] - bodies.home[base]
-    axis = R_start.T @ stoppers.axis[stopper]
-    rotation_matrix_into(state.orientation[body], R)
-    rotation_matrix_into(state.orientation[base], R_base)
-    arm[:] = R @ stoppers.point[stopper]
-    reach[:] = state.position[body] + arm - state.position[base]
-    toward[:] = R_base @ axis
+    point = stoppers.point[stopper]
+    start = rotation_rows(bodies.home_orientation[base])
+    axis = columns_product(start, stoppers.axis[stopper])
+    put_into(rows_product(rotation_rows(state.orientation[body]), point), arm)
+    now = rotation_rows(state.orientation[base])
+    put_into(rows_product(now, axis), toward)
+    home = rows_product(rotation_rows(bodies.home_orientation[body]), point)
+    reach_start = np.empty(3)
+    for i in range(3):
+        reach_start[i] = bodies.home[body, i] + home[i] - bodies.home[base, i]
+        reach[i] = state.position[body, i] + arm[i] - state.position[base, i]
     # in the driven body's axes, where the stopper stands still
-    return np.dot(axis, R_base.T @ reach - R_start.T @ reach_start) - stoppers.gap[stopper]
+    moved = difference(columns_product(now, reach), columns_product(start, reach_start))
+    return dot(axis, moved) - stoppers.gap[stopper]

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.dynamics.motion import PITCH, MotionTable, find_segment, ground_state_into
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.jit import borrowing_kernel, inner_kernel
 
 
 class Ground(NamedTuple):
@@ -23,13 +23,13 @@ class Ground(NamedTuple):
     segment: np.ndarray
 
 
-@kernel
+@inner_kernel
 def ground_at_start(table):
     """Ground at time zero, from where its displacement counts; its pitch is absolute."""
     ground = Ground(table, np.zeros(4), np.empty(4), np.empty(4), np.zeros(1, np.int64))
     move_ground_into(ground, 0.0)
-    ground.origin[:PITCH] = ground.displacement[:PITCH]
-    ground.displacement[:PITCH] = 0.0
+    for channel in range(PITCH):
+        ground.origin[channel], ground.displacement[channel] = ground.displacement[channel], 0.0
     return ground
 
 

@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.dynamics.system import ENERGY_TERMS, Rows, Status
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.geometry.vectors import copy_into
+from blockshake.jit import borrowing_kernel, inner_kernel
 
 COMPLETED, COLLAPSED, DIVERGED, PAUSED = 0, 1, 2, 3
 # First entries of a solver's ``clock``: next step (so the number of steps made), and next record
@@ -86,14 +87,14 @@ def status_at_end(code, name, time):
     return Status.COMPLETED, ""
 
 
-@kernel
+@inner_kernel
 def with_room(record, n_joints):
     """The record, grown where it cannot hold so many joints; a new joint has carried nothing so far."""
-    n_times, room, _ = record.joint_force.shape
-    if n_joints <= room:
+    n_times = record.joint_force.shape[0]
+    if n_joints <= record.joint_force.shape[1]:
         return record
     force = np.zeros((n_times, n_joints + n_joints // 4 + _SPARE_JOINTS, 3))
-    force[:, :room] = record.joint_force
+    copy_into(record.joint_force, force)
     return RunRecord(
         record.position,
         record.orientation,

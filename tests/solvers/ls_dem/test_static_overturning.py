@@ -10,7 +10,7 @@ from blockshake.geometry.polyhedron import box_vertices, convex_polyhedron, tria
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import build_structure
 from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_candidates
-from blockshake.solvers.ls_dem.contact.contact_forces import clear_loads, contact_forces_into, no_loads
+from blockshake.solvers.ls_dem.contact.contact_forces import forces_into, no_loads
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
 from blockshake.solvers.ls_dem.parameters import LsDemParameters, own_stiffness
@@ -64,8 +64,7 @@ def _threshold(structure, width):
             surfaces, bodies.driven, poses, orientation, 0.01, empty_candidates(2), no_joints()
         )
         loads = no_loads(2, joints)
-        clear_loads(bodies, loads)
-        contact_forces_into(candidates, surfaces, interfaces, poses, 0.0, loads)
+        forces_into(bodies, candidates, surfaces, interfaces, poses, 0.0, loads)
         return loads.force[1, 2], loads.moment[1, 1]
 
     borne = []

@@ -4,10 +4,14 @@ import numpy as np
 
 from blockshake.dynamics.system import Bodies, assemble_bodies
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.jit import kernel
 from blockshake.solvers.nscd.contact.contacts import delassus_into, detect_contacts, empty_contacts
 from blockshake.solvers.nscd.contact.law import friction_into, ordered_friction
 from blockshake.solvers.nscd.contact.polyhedra import empty_placed, pack_polyhedra, place_into
 from blockshake.solvers.nscd.progress import no_joints
+
+# compiled
+detect_contacts = kernel(detect_contacts)
 
 
 def random_problem(rng, n_bodies, n_contacts, mu):

@@ -6,9 +6,13 @@ from contact_problems import assert_contact_law, dense, random_problem, slow_ref
 from scipy.optimize import nnls
 
 from blockshake.geometry.structure import load_structure
+from blockshake.jit import kernel
 from blockshake.solvers.nscd.contact.contacts import contact_velocities_into, delassus_into
 from blockshake.solvers.nscd.solve.gauss_seidel import relative_residual
 from blockshake.solvers.nscd.solve.solver import solve_contacts_into
+
+# compiled
+solve_contacts_into = kernel(solve_contacts_into)
 
 G, DT = 9.81, 1e-3
 TOLERANCE = 1e-10

@@ -3,10 +3,14 @@
 import numpy as np
 import pytest
 
+from blockshake.jit import kernel
 from blockshake.solvers.nscd.parameters import DeformableParameters
 from blockshake.solvers.nscd_deformable.contact_points import joint_points
 from blockshake.solvers.nscd_deformable.elastic_bodies import anchor_into, pack_elastic
 from blockshake.solvers.nscd_deformable.shapes import elastic_shapes
+
+# compiled
+joint_points = kernel(joint_points)
 
 SQUARE = np.array([[0.0, 0.0, 0.0], [0.76, 0.0, 0.0], [0.76, 2.36, 0.0], [0.0, 2.36, 0.0]])
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.jit import inline_kernel, kernel
+from blockshake.jit import borrowing_kernel, inner_kernel, kernel
 
 _BLOCK = 8  # points along the edge of the blocks in which far triangles are left out
 # Features of a triangle ABC, rows of its pseudonormals
@@ -69,12 +69,12 @@ def _pseudonormals(corners, faces, n_vertices):
     return np.concatenate([unit[:, None], at_edge[edge], at_vertex[faces]], axis=1)
 
 
-@inline_kernel
+@borrowing_kernel
 def _dot(ax, ay, az, bx, by, bz):
     return ax * bx + ay * by + az * bz
 
 
-@inline_kernel
+@borrowing_kernel
 def _nearest_on_triangle(triangle, px, py, pz):
     """Vector from the nearest point of a triangle (3, 3) to a point, and the feature it lies on.
 
@@ -144,7 +144,7 @@ def _distances(corners, normals, centres, radii, x, y, z):
     return values
 
 
-@kernel
+@inner_kernel
 def _distance(corners, normals, centres, radii, near, px, py, pz):
     """Signed distance of one point to the nearest of the listed triangles."""
     best, distance, sign = np.inf, np.inf, 1.0

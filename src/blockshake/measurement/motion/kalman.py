@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.jit import kernel
+from blockshake.jit import inner_kernel, kernel
 
 # States
 DISPLACEMENT, VELOCITY, ACCELERATION, OFFSET, N_STATES = 0, 1, 2, 3, 4
@@ -98,13 +98,13 @@ def smooth(time, marker, marker_variance, reading, reading_variance, jerk_densit
     return likelihood
 
 
-@kernel
+@inner_kernel
 def _transition_into(step, F):
     F[DISPLACEMENT, VELOCITY] = F[VELOCITY, ACCELERATION] = step
     F[DISPLACEMENT, ACCELERATION] = 0.5 * step * step
 
 
-@kernel
+@inner_kernel
 def _add_process_noise_into(step, density, P):
     h2 = step * step
     Q = (density * step * h2 * h2 / 20.0, density * h2 * h2 / 8.0, density * step * h2 / 6.0)
@@ -119,7 +119,7 @@ def _add_process_noise_into(step, density, P):
     P[2, 2] += density * step
 
 
-@kernel
+@inner_kernel
 def _take_in(value, variance, is_acceleration, m, P):
     """Update mean and covariance with one reading in place; its log-likelihood is returned."""
     if is_acceleration:

@@ -35,8 +35,8 @@ class Assembly(NamedTuple):
     bodies: Bodies
     surfaces: Surfaces
     interfaces: Interfaces
-    stoppers: Stoppers
-    forces: ExternalForces
+    stoppers: Stoppers | None
+    forces: ExternalForces | None
     table: MotionTable
     supported: np.ndarray
     drop_limit: np.ndarray

@@ -1,4 +1,4 @@
-"""The time loop of LS-DEM, compiled whole: detect, force, kick, record, drift."""
+"""The time loop of LS-DEM: detect, force, kick, record, drift."""
 
 import numpy as np
 
@@ -18,7 +18,8 @@ from blockshake.dynamics.system import (
     potential_energy,
 )
 from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.geometry.vectors import copy_into, cross
+from blockshake.jit import borrowing_kernel, inner_kernel, loop_kernel
 from blockshake.solvers.external_forces import closure_into, external_wrenches_into
 from blockshake.solvers.ground import ground_at_start, move_ground_into
 from blockshake.solvers.ls_dem.contact.candidates import find_candidates, lists_expired
@@ -54,7 +55,6 @@ from blockshake.solvers.record import (
 _LISTS_EXPIRED = -1
 
 
-@kernel
 def integrate(assembly, times, pause, progress, candidates, joints, record):
     """Run LS-DEM from where ``progress`` stands to its last step, or to a pause.
 
@@ -82,11 +82,12 @@ def integrate(assembly, times, pause, progress, candidates, joints, record):
     closes but for the error of the scheme.
     """
     bodies = assembly.bodies
-    n_bodies = bodies.mass.size
-    loads, record = no_loads(n_bodies, joints), with_room(record, joints.slip.size)
+    n_bodies = len(bodies.mass)
     ground, turn, external = ground_at_start(assembly.table), np.zeros(3), np.zeros((n_bodies, 6))
     searched = False
     while True:
+        record = with_room(record, len(joints.slip))
+        loads = no_loads(n_bodies, joints)
         code, culprit = _advance(
             assembly, times, pause, progress, candidates, record, searched, ground, turn, external, loads
         )
@@ -96,13 +97,11 @@ def integrate(assembly, times, pause, progress, candidates, joints, record):
             assembly.surfaces, bodies.driven, progress.poses, progress.state.orientation, assembly.skin, candidates,
             joints,
         )  # fmt: skip
-        loads = no_loads(n_bodies, joints)
         progress.clock[SEARCHES] += 1
-        record = with_room(record, joints.slip.size)
         searched = True
 
 
-@borrowing_kernel
+@loop_kernel
 def _advance(assembly, times, pause, progress, candidates, record, searched, ground, turn, external, loads):
     """Steps until the lists expire, or the run ends or pauses; code and culprit as in `integrate`, or `_LISTS_EXPIRED`.
 
@@ -122,7 +121,7 @@ def _advance(assembly, times, pause, progress, candidates, record, searched, gro
         for body in range(bodies.mass.size):
             rotation_matrix_into(state.orientation[body], poses.rotation[body])
         if step == 0:
-            _copy_into(now, progress.ground)
+            copy_into(now, progress.ground)
             keep_poses(poses)
         if not searched and (
             step == 0
@@ -135,17 +134,14 @@ def _advance(assembly, times, pause, progress, candidates, record, searched, gro
         # the first force sees no motion before it: the springs of the start hold as they are
         contact_forces_into(candidates, surfaces, interfaces, poses, dt if step > 0 else 0.0, loads)
         keep_poses(poses)
-        if stoppers.body.size > 0:
-            loads.energy[SPRING_ENERGY] += stopper_forces_into(bodies, stoppers, state, loads)
-        if forces.body.size > 0:
-            external_loads_into(bodies, forces, state, t, external, loads)
+        loads.energy[SPRING_ENERGY] += stopper_forces_into(bodies, stoppers, state, loads)
+        external_loads_into(bodies, forces, state, t, external, loads)
         _account_into(bodies, loads, now, progress)
 
         _kick(bodies, loads, dt, step > 0, progress)
-        if forces.body.size > 0:
-            loads.energy[STEP_EXTERNAL_WORK] = dt * external_power(external, state)
-            # the first kick is half a step's
-            audit[INPUT_WORK] += loads.energy[STEP_EXTERNAL_WORK] * (1.0 if step > 0 else 0.5)
+        loads.energy[STEP_EXTERNAL_WORK] = dt * external_power(forces, external, state)
+        # the first kick is half a step's
+        audit[INPUT_WORK] += loads.energy[STEP_EXTERNAL_WORK] * (1.0 if step > 0 else 0.5)
         runaway = find_diverged(state)
         if runaway >= 0:
             return DIVERGED, runaway
@@ -159,12 +155,6 @@ def _advance(assembly, times, pause, progress, candidates, record, searched, gro
         _drift(bodies, dt, progress)
         clock[STEP] += 1
     return COMPLETED, -1
-
-
-@borrowing_kernel
-def _copy_into(given, out):
-    for entry in range(given.size):
-        out[entry] = given[entry]
 
 
 @borrowing_kernel
@@ -188,7 +178,7 @@ def _account_into(bodies, loads, now, progress):
                 )
                 progress.driven_force[body, axis] = loads.force[body, axis]
                 progress.driven_moment[body, axis] = loads.moment[body, axis]
-    _copy_into(now, ground)
+    copy_into(now, ground)
 
 
 @borrowing_kernel
@@ -226,7 +216,7 @@ def _drift(bodies, dt, progress):
             )  # fmt: skip
 
 
-@kernel
+@inner_kernel
 def _record_into(bodies, loads, offset, dt, progress, turn, row, record):
     """State and audit at a time ``offset`` from the step, at most half a step away, in one row of the record."""
     state, audit = progress.state, progress.audit
@@ -248,35 +238,42 @@ def _record_into(bodies, loads, offset, dt, progress, turn, row, record):
     energy[CONTACT_LOSS] = audit[DASHPOT_HEAT] - 0.5 * loads.energy[STEP_DASHPOT_HEAT]
     energy[VISCOUS_LOSS] = 0.0
     energy[INPUT] = audit[INPUT_WORK] - 0.5 * loads.energy[STEP_EXTERNAL_WORK]
-    record.joint_force[row, : loads.joints.slip.size] = loads.joints.force
+    copy_into(loads.joints.force, record.joint_force[row])
 
 
-@kernel
+@inner_kernel
 def stopper_forces_into(bodies, stoppers, state, loads):
-    """Add the forces of closed stoppers to ``loads``; the elastic energy they hold is returned [J].
+    """Add the forces of closed stoppers, if any, to ``loads``; the elastic energy they hold is returned [J].
 
     With the closure ``c`` of its body's point beyond the gap, see `closure_into`, a stopper pushes the point back with
     ``stiffness * c`` and the first driven body with the opposite.
     """
     energy = 0.0
+    if stoppers is None:
+        return energy
     driven = np.argmax(bodies.driven)
     reach, arm, toward = np.empty(3), np.empty(3), np.empty(3)
     for stopper in range(stoppers.body.size):
         closure = closure_into(bodies, stoppers, stopper, driven, state, reach, arm, toward)
         if closure > 0.0:
             body, stiffness = stoppers.body[stopper], stoppers.stiffness[stopper]
-            force = -stiffness * closure * toward
-            loads.force[body] += force
-            loads.moment[body] += np.cross(arm, force)
-            loads.force[driven] -= force
-            loads.moment[driven] -= np.cross(reach, force)
+            size = -stiffness * closure
+            force = size * toward[0], size * toward[1], size * toward[2]
+            of_body, of_driven = cross(arm, force), cross(reach, force)
+            for axis in range(3):
+                loads.force[body, axis] += force[axis]
+                loads.moment[body, axis] += of_body[axis]
+                loads.force[driven, axis] -= force[axis]
+                loads.moment[driven, axis] -= of_driven[axis]
             energy += 0.5 * stiffness * closure * closure
     return energy
 
 
-@kernel
+@inner_kernel
 def external_loads_into(bodies, forces, state, time, external, loads):
-    """Add external forces to ``loads``; ``external`` (n_bodies, 6) is overwritten."""
+    """Add external forces, if any, to ``loads``; ``external`` (n_bodies, 6) is then overwritten."""
+    if forces is None:
+        return
     external_wrenches_into(bodies, forces, state, time, 0.0, external)
     for body in range(external.shape[0]):
         for axis in range(3):
@@ -284,10 +281,12 @@ def external_loads_into(bodies, forces, state, time, external, loads):
             loads.moment[body, axis] += external[body, 3 + axis]
 
 
-@kernel
-def external_power(external, state):
-    """Power of external forces on bodies that move as ``state`` has it [W]."""
+@inner_kernel
+def external_power(forces, external, state):
+    """Power of external forces, if any, on bodies that move as ``state`` has it [W]."""
     power = 0.0
+    if forces is None:
+        return power
     for body in range(external.shape[0]):
         for axis in range(3):
             power += external[body, axis] * state.velocity[body, axis]

@@ -6,7 +6,8 @@ import numpy as np
 
 from blockshake.dynamics.system import State
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.jit import kernel
+from blockshake.geometry.vectors import copy_into
+from blockshake.jit import inner_kernel
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 
 # Entry of ``clock`` after `STEP` and `NEXT_RECORD` of `blockshake.solvers.record`
@@ -32,7 +33,7 @@ class NearPairs(NamedTuple):
     touched: np.ndarray
 
 
-@kernel
+@inner_kernel
 def no_joints():
     """Joints before any body came near another."""
     return NearPairs(
@@ -41,7 +42,7 @@ def no_joints():
     )  # fmt: skip
 
 
-@kernel
+@inner_kernel
 def find_joint(joints, a, b):
     """Row of the joint of two bodies, -1 where they never came near each other."""
     for joint in range(joints.slip.size):
@@ -50,7 +51,7 @@ def find_joint(joints, a, b):
     return -1
 
 
-@kernel
+@inner_kernel
 def add_joints(joints, pairs):
     """Joints, followed by those of further pairs, which have no shift, force, slip or touch yet."""
     n, more = joints.slip.size, pairs.shape[0]
@@ -58,9 +59,13 @@ def add_joints(joints, pairs):
         np.empty((n + more, 2), np.int64), np.zeros((n + more, 3)), np.zeros((n + more, 3)), np.zeros(n + more),
         np.zeros(n + more), np.zeros(n + more, np.bool_),
     )  # fmt: skip
-    new.pair[:n], new.pair[n:], new.shift[:n] = joints.pair, pairs, joints.shift
-    new.force[:n], new.slip[:n], new.slip_rate[:n] = joints.force, joints.slip, joints.slip_rate
-    new.touched[:n] = joints.touched
+    copy_into(pairs, new.pair[n:])
+    copy_into(joints.pair, new.pair)
+    copy_into(joints.shift, new.shift)
+    copy_into(joints.force, new.force)
+    copy_into(joints.slip, new.slip)
+    copy_into(joints.slip_rate, new.slip_rate)
+    copy_into(joints.touched, new.touched)
     return new
 
 

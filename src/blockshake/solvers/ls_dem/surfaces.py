@@ -9,7 +9,7 @@ from blockshake.geometry.level_set import box_distance, hollow_box_distance
 from blockshake.geometry.level_set_grid import box_grid, grid_distance, grid_table, mesh_grid
 from blockshake.geometry.meshes.mesh_nodes import mesh_nodes
 from blockshake.geometry.surface_nodes import box_nodes
-from blockshake.jit import inline_kernel, kernel
+from blockshake.jit import borrowing_kernel, inner_kernel
 
 INVERSE_SPACING = 7  # column of ``Surfaces.lattice``
 _COARSEST = 4.0 / 3.0  # cell of a lattice over volume per surface: two thirds of a plate's thickness
@@ -183,7 +183,7 @@ def _check_grid(structure, name, parameters):
         raise _refusal(structure, name, f"expected fewer lattice points: ls_dem.grid_spacing is {spacing} m")
 
 
-@kernel
+@inner_kernel
 def level_set(surfaces, shape, x, y, z):
     """Level-set value of a shape at one place in its frame [m]."""
     if surfaces.first_plane[shape] < surfaces.first_plane[shape + 1]:
@@ -201,7 +201,7 @@ def level_set(surfaces, shape, x, y, z):
     return grid_distance(x, y, z, surfaces.values, at_first, ox, oy, oz, n_x, n_y, n_z, inverse)[0]
 
 
-@inline_kernel
+@borrowing_kernel
 def lattice_of(lattice, shape):
     """First value, origin, counts and cells per metre of a shape's lattice, as eight numbers."""
     row = lattice[shape]

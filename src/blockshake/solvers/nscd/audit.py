@@ -13,8 +13,8 @@ from blockshake.dynamics.system import (
     kinetic_energy,
     potential_energy,
 )
-from blockshake.geometry.vectors import dot, transposed_product, velocity_at
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.geometry.vectors import copy_into, dot, transposed_product, velocity_at
+from blockshake.jit import borrowing_kernel, inner_kernel
 from blockshake.solvers.external_forces import closure_into
 from blockshake.solvers.nscd.progress import (
     BAD_STEPS,
@@ -36,7 +36,7 @@ from blockshake.solvers.nscd.progress import (
 _BAD_RESIDUAL = 1e-4
 
 
-@kernel
+@inner_kernel
 def start_audit(bodies, contacts, dt, theta, strain, progress):
     """Energy at the start; what lifts everything by a millimetre is the least that is ever "in play".
 
@@ -53,11 +53,11 @@ def start_audit(bodies, contacts, dt, theta, strain, progress):
             energy[ELASTIC] += 0.5 * depth * depth / (theta * dt * dt * compliance)
     progress.audit[HELD] = energy[ELASTIC]
     energy[ELASTIC] += strain
-    progress.energy_start[:] = energy
+    copy_into(energy, progress.energy_start)
     weight = 0.0
     for body in range(bodies.mass.size):
         if not bodies.driven[body]:
-            weight += bodies.mass[body] * np.linalg.norm(bodies.gravity)
+            weight += bodies.mass[body] * np.sqrt(dot(bodies.gravity, bodies.gravity))
     progress.audit[IN_PLAY] = 1e-3 * weight
 
 
@@ -90,9 +90,11 @@ def audit_into(contacts, n_contacts, progress):
     audit[MISFIT] = max(audit[MISFIT], abs(balance - start[KINETIC] - start[POTENTIAL] - start[ELASTIC]))
 
 
-@kernel
+@inner_kernel
 def stopper_energy(bodies, stoppers, base, state):
-    """Energy in the stoppers of the driven body ``base`` [J]."""
+    """Energy in the stoppers, if any, of the driven body ``base`` [J]."""
+    if stoppers is None:
+        return 0.0
     held, reach, arm, toward = 0.0, np.empty(3), np.empty(3), np.empty(3)
     for stopper in range(stoppers.body.size):
         squeezed = closure_into(bodies, stoppers, stopper, base, state, reach, arm, toward)

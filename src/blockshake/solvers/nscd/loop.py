@@ -4,9 +4,9 @@ import numpy as np
 
 from blockshake.dynamics.collapse import find_collapsed
 from blockshake.dynamics.system import place_driven_into
-from blockshake.geometry.vectors import dot
-from blockshake.jit import borrowing_kernel, kernel
-from blockshake.solvers.external_forces import external_wrenches_into
+from blockshake.geometry.vectors import copy_into, dot
+from blockshake.jit import borrowing_kernel, inner_kernel, kernel
+from blockshake.solvers.external_forces import external_impulses_into, number_of
 from blockshake.solvers.ground import ground_at_start, move_ground_by_secant_into, move_ground_into
 from blockshake.solvers.nscd.audit import account_into, audit_into, count_into, start_audit, stopper_energy
 from blockshake.solvers.nscd.contact.contacts import (
@@ -68,7 +68,7 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
     dt, theta = settings.dt, settings.theta
     step, placed, ground = empty_step(state), empty_placed(polyhedra), ground_at_start(scene.table)
     energy_before = energy.copy()
-    gravity = np.linalg.norm(bodies.gravity)
+    gravity = np.sqrt(dot(bodies.gravity, bodies.gravity))
     if clock[STEP] == 0:
         _start(scene, ground, step, placed, progress)
     n_steps = int(np.ceil(times[times.size - 1] / dt - ROUNDING))
@@ -82,15 +82,13 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
         while part < parts:
             h, number = dt / parts, clock[STEP] * parts + part
             move_ground_by_secant_into(ground, (number + 1.0 - theta) * h, (number + 2.0 - theta) * h, h)
-            if forces.body.size > 0:
-                external_wrenches_into(bodies, forces, state, (number + 0.5) * h, 0.5 * h, step.external)
-                step.external[:] *= h
+            external_impulses_into(bodies, forces, state, (number + 0.5) * h, h, step.external)
             predict_into(bodies, state, ground, h, theta, step)
 
             renewed = _detect(
                 bodies, stoppers, layers, polyhedra, settings, watch.base, step, placed, progress.face, h
             )
-            n_contacts = renewed.gap.size - stoppers.body.size
+            n_contacts = renewed.gap.size - number_of(stoppers)
             friction_into(friction, joints, step.rotations, renewed)
             law_shift_into(step, h, theta, settings.restitution, renewed)
             warm_start_into(contacts, polyhedra.radius, h / audit[LAST_STEP], renewed)
@@ -106,8 +104,8 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
 
             move_ground_into(ground, (number + 1) * h)
             move_into(bodies, ground, h, theta, contacts, step, state)
-            energy_before[:] = energy
-            squeezed = stopper_energy(bodies, stoppers, watch.base, state) if stoppers.body.size > 0 else 0.0
+            copy_into(energy, energy_before)
+            squeezed = stopper_energy(bodies, stoppers, watch.base, state)
             u = np.empty((contacts.gap.size, 3))
             contact_velocities_into(contacts, step.v_mean, u)
             account_into(bodies, contacts, u, step, theta, squeezed, (0.0, 0.0, 0.0), progress)
@@ -136,7 +134,7 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
     return COMPLETED, -1, contacts, joints, record
 
 
-@kernel
+@inner_kernel
 def _start(scene, ground, step, placed, progress):
     """Driven bodies where the motion has them at time zero, and the energy that the run starts with."""
     state, dt, theta = progress.state, scene.settings.dt, scene.settings.theta
@@ -151,16 +149,15 @@ def _start(scene, ground, step, placed, progress):
     start_audit(scene.bodies, at_start, dt, theta, 0.0, progress)
 
 
-@kernel
+@inner_kernel
 def _detect(bodies, stoppers, layers, polyhedra, settings, base, step, placed, face, dt):
     """Contacts at the predicted poses, the stoppers last, with their Delassus operators."""
     place_into(polyhedra, step.detection.position, step.detection.orientation, placed)
     contacts = detect_contacts(
         bodies, polyhedra, placed, step.rotations, contact_margin(step.v_start, polyhedra.radius, bodies.gravity, dt),
-        settings.shrink, layers, settings.theta * dt * dt, face, stoppers.body.size,
+        settings.shrink, layers, settings.theta * dt * dt, face, number_of(stoppers),
     )  # fmt: skip
-    if stoppers.body.size > 0:
-        place_stoppers_into(bodies, stoppers, base, step, dt, settings.theta, contacts)
+    place_stoppers_into(bodies, stoppers, base, step, dt, settings.theta, contacts)
     delassus_into(bodies, step.inverse_inertia, contacts)
     return contacts
 

@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.dynamics.system import ENERGY_TERMS, State
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.geometry.vectors import copy_into
+from blockshake.jit import borrowing_kernel, inner_kernel
 
 # Entries of ``clock`` after `STEP` and `NEXT_RECORD` of `blockshake.solvers.record`: sums and counts over the steps
 ITERATIONS, MOST_ITERATIONS, BAD_STEPS, CAPPED_STEPS, PARTED_STEPS, N_CLOCK = 2, 3, 4, 5, 6, 7
@@ -80,7 +81,7 @@ def press_anew(joints, contacts, n_contacts):
     return False
 
 
-@kernel
+@inner_kernel
 def with_pressed(joints, contacts, n_contacts):
     """Joints, followed by those of bodies that press on each other for the first time, which have not slipped yet.
 
@@ -93,14 +94,16 @@ def with_pressed(joints, contacts, n_contacts):
     return joints
 
 
-@kernel
+@inner_kernel
 def _with_joint(joints, a, b):
     """Joints with one more, which has not slipped yet; ``row`` is changed in place."""
     n = joints.slip.size
     new = Joints(
         joints.row, np.empty((n + 1, 2), np.int64), np.zeros(n + 1), np.zeros(n + 1), np.zeros((n + 1, 2))
     )
-    new.pair[:n], new.slip[:n], new.slip_rate[:n] = joints.pair, joints.slip, joints.slip_rate
+    copy_into(joints.pair, new.pair)
+    copy_into(joints.slip, new.slip)
+    copy_into(joints.slip_rate, new.slip_rate)
     new.row[a, b] = n
     new.pair[n, 0], new.pair[n, 1] = a, b
     return new

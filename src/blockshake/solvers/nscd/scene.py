@@ -42,8 +42,8 @@ class ContactScene(NamedTuple):
 
     bodies: Bodies
     friction: OrderedFriction
-    stoppers: Stoppers
-    forces: ExternalForces
+    stoppers: Stoppers | None
+    forces: ExternalForces | None
     layers: np.ndarray
     polyhedra: Polyhedra
     table: MotionTable
@@ -81,8 +81,8 @@ def assemble_scene(structure, bodies, stoppers, motion, parameters, time_step, o
     return ContactScene(
         bodies=reordered(bodies._replace(gravity=None), order)._replace(gravity=bodies.gravity),
         friction=ordered_friction(structure, order),
-        stoppers=stoppers._replace(body=rank[stoppers.body]),
-        forces=forces._replace(body=rank[forces.body], base=base),
+        stoppers=stoppers and stoppers._replace(body=rank[stoppers.body]),
+        forces=forces and forces._replace(body=rank[forces.body], base=base),
         layers=np.ascontiguousarray(joint_compliance(structure)[np.ix_(order, order)]),
         polyhedra=pack_polyhedra(structure, order),
         table=MotionTable(*(np.ascontiguousarray(part) for part in table)),

@@ -6,7 +6,7 @@ from scipy.sparse.csgraph import connected_components
 from blockshake.dynamics.system import State
 from blockshake.geometry.rotations import rotate_into
 from blockshake.geometry.structure import START_TOLERANCE
-from blockshake.jit import kernel
+from blockshake.jit import inner_kernel, kernel
 from blockshake.solvers.ground import ground_at_start
 from blockshake.solvers.nscd.contact.contacts import delassus_into, detect_contacts
 from blockshake.solvers.nscd.contact.law import friction_into, law_shift_into
@@ -122,7 +122,7 @@ def _static_step(scene, joints, state):
     move_from_rest_into(bodies, step.v, dt, state)
 
 
-@kernel
+@inner_kernel
 def move_from_rest_into(bodies, v, dt, state):
     """Poses after a step with the velocities ``v`` (n_bodies, 6) at its end."""
     turn = np.empty(3)

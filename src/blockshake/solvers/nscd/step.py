@@ -15,7 +15,7 @@ from blockshake.geometry.vectors import (
     tensor_in_world_into,
     transposed_product,
 )
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.jit import borrowing_kernel, inner_kernel
 
 _MAX_ITERATIONS = 50
 _ROUNDING = 1e-15
@@ -44,7 +44,7 @@ class Step(NamedTuple):
     impulse: np.ndarray
 
 
-@kernel
+@inner_kernel
 def empty_step(state):
     """Work space for the bodies of a state."""
     n_bodies = state.position.shape[0]
@@ -62,7 +62,7 @@ def empty_step(state):
     )
 
 
-@kernel
+@inner_kernel
 def copy_state(state):
     """A copy that shares no array."""
     return State(

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.geometry.overlap import find_pairs
-from blockshake.geometry.vectors import cross, difference, dot, put_into, transposed_product
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.geometry.vectors import copy_into, cross, difference, dot, put_into, transposed_product
+from blockshake.jit import borrowing_kernel, inner_kernel
 from blockshake.solvers.nscd.contact.contacts import add_contact_into, empty_contacts, first_rows
 from blockshake.solvers.nscd.contact.detection import LEAST_AREA, detect_pair_into
 from blockshake.solvers.nscd_deformable.elastic_bodies import anchor_into
@@ -67,7 +67,7 @@ def _joint_points_into(P, g, n_s, n_t, area, points, clearance, areas):
     return count
 
 
-@kernel
+@inner_kernel
 def joint_points(corners, gaps, count, spacing):
     """Points over a joint, from its corners.
 
@@ -100,18 +100,23 @@ def joint_points(corners, gaps, count, spacing):
     return points[:n_points], clearance[:n_points], areas[:n_points]
 
 
-@kernel
+@inner_kernel
 def _with_capacity(contacts, points, weights, capacity):
     """The contacts so far, with room for more."""
     if capacity <= contacts.gap.size:
         return contacts, points, weights
     more = empty_contacts(2 * capacity)
-    n = contacts.gap.size
-    more.body_a[:n], more.body_b[:n], more.gap[:n] = contacts.body_a, contacts.body_b, contacts.gap
-    more.arm_a[:n], more.arm_b[:n], more.home[:n] = contacts.arm_a, contacts.arm_b, contacts.home
-    more.basis[:n], more.compliance[:n] = contacts.basis, contacts.compliance
+    copy_into(contacts.body_a, more.body_a)
+    copy_into(contacts.body_b, more.body_b)
+    copy_into(contacts.gap, more.gap)
+    copy_into(contacts.arm_a, more.arm_a)
+    copy_into(contacts.arm_b, more.arm_b)
+    copy_into(contacts.home, more.home)
+    copy_into(contacts.basis, more.basis)
+    copy_into(contacts.compliance, more.compliance)
     more_points, more_weights = np.empty((2 * capacity, 2, 4), np.int64), np.empty((2 * capacity, 2, 4))
-    more_points[:n], more_weights[:n] = points, weights
+    copy_into(points, more_points)
+    copy_into(weights, more_weights)
     return more, more_points, more_weights
 
 
@@ -140,7 +145,7 @@ def _add_joint_into(
     return count
 
 
-@kernel
+@inner_kernel
 def find_contacts(
     bodies, elastic, polyhedra, placed, rotations, margin, spacing, layers, admittance, memory, n_stoppers
 ):
@@ -186,7 +191,7 @@ def find_contacts(
     return first_rows(contacts, total), Anchors(points[:total].copy(), weights[:total].copy(), first, active)
 
 
-@kernel
+@inner_kernel
 def _active_points(elastic, points, weights):
     """Points that any contact holds on to, and where those of each body begin."""
     n_bodies = elastic.first_point.size - 1

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import borrowing_kernel, inline_kernel, kernel
+from blockshake.jit import borrowing_kernel, inline_kernel, inner_kernel, kernel
 from blockshake.solvers.nscd_deformable.elastic_bodies import shapes_of
 
 
@@ -135,7 +135,7 @@ def _move_elastic_into(elastic, response, anchors, forces, rate, deformation, pu
     return viscous + (theta - 0.5) * algorithmic
 
 
-@kernel
+@inner_kernel
 def move_elastic_into(elastic, response, anchors, forces, rate, deformation):
     """Elastic coordinates at the end of the step; the energy that viscosity and the scheme took is returned [J].
 

@@ -4,8 +4,9 @@ import numpy as np
 
 from blockshake.dynamics.collapse import find_collapsed
 from blockshake.dynamics.system import place_driven_into
-from blockshake.jit import kernel
-from blockshake.solvers.external_forces import external_wrenches_into
+from blockshake.geometry.vectors import copy_into, dot
+from blockshake.jit import inner_kernel, kernel
+from blockshake.solvers.external_forces import external_impulses_into, number_of
 from blockshake.solvers.ground import ground_at_start, move_ground_by_secant_into, move_ground_into
 from blockshake.solvers.nscd.audit import account_into, audit_into, count_into, start_audit, stopper_energy
 from blockshake.solvers.nscd.contact.contacts import contact_margin, place_stoppers_into
@@ -49,7 +50,7 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
     dt, theta = settings.dt, settings.theta
     step, placed, ground = empty_step(state), empty_placed(scene.polyhedra), ground_at_start(scene.table)
     energy_before = progress.energy.copy()
-    gravity = np.linalg.norm(bodies.gravity)
+    gravity = np.sqrt(dot(bodies.gravity, bodies.gravity))
     rate = np.empty(deformation.rate.size)
     if clock[STEP] == 0:
         _start(model, ground, step, placed, deformation, progress)
@@ -64,11 +65,7 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
         while part < parts:
             h, number = dt / parts, clock[STEP] * parts + part
             move_ground_by_secant_into(ground, (number + 1.0 - theta) * h, (number + 2.0 - theta) * h, h)
-            if scene.forces.body.size > 0:
-                external_wrenches_into(
-                    bodies, scene.forces, state, (number + 0.5) * h, 0.5 * h, step.external
-                )
-                step.external[:] *= h
+            external_impulses_into(bodies, scene.forces, state, (number + 0.5) * h, h, step.external)
             predict_into(bodies, state, ground, h, theta, step)
 
             margin = contact_margin(step.v_start, scene.polyhedra.radius, bodies.gravity, h)
@@ -77,7 +74,7 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
                 model, response, theta, settings.restitution, margin, joints, progress.face, contacts, share,
                 floor, settings.tolerance, deformation, rate, step, placed, factor,
             )  # fmt: skip
-            n_contacts = renewed.gap.size - scene.stoppers.body.size
+            n_contacts = renewed.gap.size - number_of(scene.stoppers)
             iterations += tried
             if parts < settings.impact_parts and bodies_meet(renewed, n_contacts, step.v_start, gravity * dt):
                 parts, response = settings.impact_parts, model.part
@@ -93,7 +90,7 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
             u_mean = np.empty((contacts.gap.size, 3))
             surface_velocities_into(anchors, step.rotations, contacts, step.v_mean, motion.points, u_mean)
             kinetic, strain = elastic_energy(elastic, deformation)
-            energy_before[:] = progress.energy
+            copy_into(progress.energy, energy_before)
             squeezed = stopper_energy(bodies, scene.stoppers, scene.watch.base, state)
             account_into(bodies, contacts, u_mean, step, theta, squeezed, (kinetic, strain, lost), progress)
             audit_into(contacts, n_contacts, progress)
@@ -120,7 +117,7 @@ def integrate(model, times, pause, progress, deformation, contacts, joints, fact
     return COMPLETED, -1, contacts, joints, factor, record
 
 
-@kernel
+@inner_kernel
 def _start(model, ground, step, placed, deformation, progress):
     """Driven bodies where the motion has them at time zero, and the energy that the run starts with."""
     scene, state = model.scene, progress.state
@@ -138,7 +135,7 @@ def _start(model, ground, step, placed, deformation, progress):
     start_audit(scene.bodies, at_start, dt, theta, strain, progress)
 
 
-@kernel
+@inner_kernel
 def solve_step(
     model, response, theta, restitution, margin, joints, memory, contacts_before, share, floor, tolerance,
     deformation, rate, step, placed, factor,
@@ -176,7 +173,7 @@ def solve_step(
     place_into(scene.polyhedra, step.detection.position, step.detection.orientation, placed)
     contacts, anchors = find_contacts(
         bodies, elastic, scene.polyhedra, placed, step.rotations, margin, model.spacing, scene.layers,
-        theta * dt * dt, memory, scene.stoppers.body.size,
+        theta * dt * dt, memory, number_of(scene.stoppers),
     )  # fmt: skip
     place_stoppers_into(bodies, scene.stoppers, scene.watch.base, step, dt, theta, contacts)
     tangents_into(step.rotations, contacts)
@@ -196,5 +193,5 @@ def solve_step(
     iterations, residual, factor = solve_contacts_into(
         problem, contacts, floor, tolerance, scene.settings.max_iterations, motion, factor
     )
-    step.v[:] = motion.v
+    copy_into(motion.v, step.v)
     return contacts, anchors, motion, iterations, residual, factor

@@ -6,6 +6,7 @@ import numba
 import numpy as np
 import pytest
 
+from blockshake import jit
 from blockshake.jit import kernel
 from blockshake.solvers.ls_dem.contact import located_nodes
 from blockshake.solvers.ls_dem.contact.located_nodes import locate_nodes_into
@@ -21,6 +22,10 @@ from blockshake.solvers.ls_dem.contact.packets import (
 )
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.ls_dem.surfaces import assemble_surfaces, level_set
+
+# compiled
+level_set = kernel(level_set)
+locate_nodes_into = kernel(locate_nodes_into)
 
 N_PACKETS = 50
 
@@ -81,7 +86,9 @@ def test_packets_give_the_bits_of_single_places(surfaces):
 @pytest.mark.parametrize("name", ["_locate_in_box_into", "_locate_in_lattice_into"])
 def test_packets_become_vector_instructions(surfaces, name):
     """Products of several doubles at once, on any 64-bit processor."""
-    fresh = numba.njit(error_model="numpy", noalias=True)(getattr(located_nodes, name).py_func)  # not cached
+    fresh = numba.njit(error_model="numpy", pipeline_class=jit._compiler(jit._Whole, noalias=True))(
+        getattr(located_nodes, name)
+    )
     table = (surfaces.half, surfaces.chamfer)
     if name == "_locate_in_lattice_into":
         table = (surfaces.lattice, surfaces.values)

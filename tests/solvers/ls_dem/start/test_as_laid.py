@@ -9,7 +9,7 @@ from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import START_TOLERANCE, build_structure
 from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_candidates
-from blockshake.solvers.ls_dem.contact.contact_forces import clear_loads, contact_forces_into, no_loads
+from blockshake.solvers.ls_dem.contact.contact_forces import forces_into, no_loads
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
@@ -266,8 +266,7 @@ def test_the_force_of_a_shifted_joint_has_no_moment_of_its_own(make_structure):
         surfaces, bodies.driven, poses, orientation, 0.01, empty_candidates(2), joints
     )
     loads = no_loads(2, joints)
-    clear_loads(bodies, loads)
-    contact_forces_into(candidates, surfaces, interfaces, poses, 0.0, loads)
+    forces_into(bodies, candidates, surfaces, interfaces, poses, 0.0, loads)
     assert np.abs(loads.force[1]).max() > 1e5
     np.testing.assert_allclose(loads.force[0], -loads.force[1], rtol=1e-12)
     total = loads.moment.sum(axis=0) + np.cross(position, loads.force).sum(axis=0)

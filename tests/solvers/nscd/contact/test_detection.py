@@ -4,9 +4,13 @@ import trimesh
 
 from blockshake.errors import InputError
 from blockshake.geometry.overlap import find_pairs
+from blockshake.jit import kernel
 from blockshake.solvers.nscd.contact.detection import detect_pair_into
 from blockshake.solvers.nscd.contact.overlap_polygon import choose_four_into, shrink_polygon_into
 from blockshake.solvers.nscd.contact.polyhedra import empty_placed, pack_polyhedra, place_into
+
+# compiled
+detect_pair_into = kernel(detect_pair_into)
 
 ROUNDING = 1e-12
 

@@ -2,9 +2,15 @@ import numpy as np
 import pytest
 from contact_problems import dense, random_problem, slow_reference
 
+from blockshake.jit import kernel
 from blockshake.solvers.nscd.solve.block_elimination import block_system, find_block, solve_blocks_into
 from blockshake.solvers.nscd.solve.gauss_seidel import sweep_into
 from blockshake.solvers.nscd.solve.solver import solve_contacts_into
+
+# compiled
+solve_blocks_into = kernel(solve_blocks_into)
+solve_contacts_into = kernel(solve_contacts_into)
+sweep_into = kernel(sweep_into)
 
 TOLERANCE = 1e-10
 

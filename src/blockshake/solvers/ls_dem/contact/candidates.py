@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.geometry.overlap import find_pairs
 from blockshake.geometry.rotations import rotation_matrix_into
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.jit import borrowing_kernel, inner_kernel, kernel
 from blockshake.solvers.ls_dem.contact.joint_areas import joint_areas_into
 from blockshake.solvers.ls_dem.contact.located_nodes import locate_nodes_into
 from blockshake.solvers.ls_dem.contact.packets import (
@@ -50,7 +50,7 @@ class Candidates(NamedTuple):
     orientation: np.ndarray
 
 
-@kernel
+@inner_kernel
 def empty_candidates(n_bodies):
     """Lists before the first search."""
     return Candidates(
@@ -92,7 +92,7 @@ def lists_expired(candidates, surfaces, driven, position, orientation, skin):
     return not (most + second <= skin)
 
 
-@kernel
+@inner_kernel
 def _boxes(surfaces, position, orientation):
     """Lower and upper corners of the bodies' bounding boxes, (n_bodies, 3) each [m]."""
     n_bodies = position.shape[0]
@@ -110,7 +110,7 @@ def _boxes(surfaces, position, orientation):
     return low, high
 
 
-@kernel
+@inner_kernel
 def _near_nodes(surfaces, pair, R, d, side, skin, nodes, count):
     """Append the nodes of one side of a pair within ``skin`` of the other body; list and count are returned."""
     owner, other = pair[side], pair[1 - side]
@@ -132,7 +132,7 @@ def _near_nodes(surfaces, pair, R, d, side, skin, nodes, count):
     return nodes, count
 
 
-@kernel
+@inner_kernel
 def _share(surfaces, driven, owner, other):
     """Share of an interface that the nodes of ``owner`` stand for, in halves: those of both bodies stand for one each.
 
@@ -213,7 +213,7 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
     return new, joints
 
 
-@kernel
+@inner_kernel
 def _most_packets(first):
     """Number of packets of the pair that has most."""
     most = 0
@@ -265,7 +265,7 @@ def nearest_node(candidates, pair):
     return least, at, lane_at
 
 
-@kernel
+@inner_kernel
 def _earlier_pairs(old, pairs):
     """Row of every pair in an earlier list, -1 where it is not there; both are sorted, so one pass finds them."""
     earlier, at = np.full(len(pairs), -1), 0
@@ -278,7 +278,7 @@ def _earlier_pairs(old, pairs):
     return earlier
 
 
-@kernel
+@inner_kernel
 def _joints_of(pairs, earlier, old, joints):
     """Joint of every pair, that of an earlier approach or a new one, and all joints; ``old``: of earlier pairs."""
     joint, fresh = np.empty(len(pairs), np.int64), np.empty(len(pairs), np.int64)
@@ -294,7 +294,7 @@ def _joints_of(pairs, earlier, old, joints):
     return joint, add_joints(joints, pairs[fresh[:n_fresh]])
 
 
-@kernel
+@inner_kernel
 def _carry_over_into(old, earlier, new):
     """Shear springs of nodes that both lists hold; these are sorted, so one pass a side finds them."""
     for pair in range(new.pairs.shape[0]):

@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.dynamics.friction import friction_asymmetry, friction_coefficient
 from blockshake.geometry.vectors import cross, difference, matrix_product
-from blockshake.jit import borrowing_kernel, inline_kernel, kernel
+from blockshake.jit import borrowing_kernel, inner_kernel, loop_kernel
 from blockshake.solvers.ls_dem.contact.candidates import locate_pair_into
 from blockshake.solvers.ls_dem.contact.contact_law import Law, side_forces_into
 from blockshake.solvers.ls_dem.contact.packets import LANES, N_SUMS, SUM_DAMPED, SUM_HELD, SUM_SLID
@@ -38,7 +38,7 @@ class Loads(NamedTuple):
     sums: np.ndarray
 
 
-@kernel
+@inner_kernel
 def no_loads(n_bodies, joints):
     """Loads before the first evaluation."""
     return Loads(
@@ -56,6 +56,13 @@ def clear_loads(bodies, loads):
     for body in range(bodies.mass.size):
         for axis in range(3):
             loads.force[body, axis] = 0.0 if bodies.driven[body] else bodies.mass[body] * bodies.gravity[axis]
+
+
+@loop_kernel
+def forces_into(bodies, candidates, surfaces, interfaces, poses, dt, loads):
+    """Gravity and contact forces, see `contact_forces_into`, as Python calls them."""
+    clear_loads(bodies, loads)
+    contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads)
 
 
 @borrowing_kernel
@@ -138,7 +145,7 @@ def _lever_into(shift, rotation, force, moment):
         moment[i] -= lever[i]
 
 
-@inline_kernel
+@borrowing_kernel
 def _slip_into(joints, joint, mu, heat, dt):
     """Slip of a joint in this step: its friction heat over Coulomb's limit, a mean weighted by the force.
 

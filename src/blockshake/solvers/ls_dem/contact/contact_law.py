@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import inline_kernel, separate_kernel
+from blockshake.jit import borrowing_kernel, separate_kernel
 from blockshake.solvers.ls_dem.contact.packets import (
     AREA,
     BUSY,
@@ -51,7 +51,7 @@ class Law(NamedTuple):
     rate: float
 
 
-@inline_kernel
+@borrowing_kernel
 def normal_force(phi, slope, closing, k_n, gamma_n, least):
     """Magnitude of a node's normal force, Eq. (2) [N].
 
@@ -66,7 +66,7 @@ def normal_force(phi, slope, closing, k_n, gamma_n, least):
     return force if (force > least and phi < 0.0) else 0.0
 
 
-@inline_kernel
+@borrowing_kernel
 def trial_stretch(ox, oy, oz, ux, uy, uz, nx, ny, nz):
     """Stretch of a node's shear spring after the motion of a step, before Coulomb's limit: Eq. (4).
 
@@ -81,7 +81,7 @@ def trial_stretch(ox, oy, oz, ux, uy, uz, nx, ny, nz):
     return tx - along * nx, ty - along * ny, tz - along * nz, dropped, along - dropped
 
 
-@inline_kernel
+@borrowing_kernel
 def kept_stretch(tx, ty, tz, f_n, k_s, law):
     """Share of a trial stretch that Coulomb's limit lets a shear spring keep, Eq. (5), and the stretch squared.
 
@@ -94,7 +94,7 @@ def kept_stretch(tx, ty, tz, f_n, k_s, law):
     return limit / reach if reach > limit else 1.0, squared
 
 
-@inline_kernel
+@borrowing_kernel
 def node_force(phi, slope, nx, ny, nz, ux, uy, uz, ox, oy, oz, closed, area, weight, law):
     """Force of one node, its springs afterwards, and the energy it moved.
 

@@ -3,7 +3,8 @@
 import numpy as np
 
 from blockshake.geometry.level_set import hollow_depth
-from blockshake.jit import kernel
+from blockshake.geometry.vectors import copy_into
+from blockshake.jit import borrowing_kernel, inner_kernel
 from blockshake.solvers.ls_dem.contact.packets import AREA, DAMPING_WEIGHT, LANES
 from blockshake.solvers.ls_dem.contact.relative_pose import facing_of
 
@@ -16,7 +17,7 @@ _LEAST_PIVOT = 1e-6  # of moments over a length of the overlap's size, where 1 i
 _ORDERS = (6, 3, 1)  # terms of a polynomial of degree two, one and none
 
 
-@kernel
+@inner_kernel
 def joint_areas_into(candidates, surfaces, pair, key):
     """Areas and damping weights of the listed nodes of a pair, whose key (4,) is that of `facing_key`; overwritten.
 
@@ -42,7 +43,7 @@ def joint_areas_into(candidates, surfaces, pair, key):
                     candidates.packets[packet, DAMPING_WEIGHT + lane] = factor * surfaces.damping_weight[node]
 
 
-@kernel
+@inner_kernel
 def _factor(candidates, surfaces, pair, key, second, node, factors, centre):
     """Factor of a node's area [1]: that of the polynomial in the overlap, next to none beyond it on the same flat."""
     a, b = candidates.pairs[pair, 0], candidates.pairs[pair, 1]
@@ -54,7 +55,7 @@ def _factor(candidates, surfaces, pair, key, second, node, factors, centre):
     return max(_value(factors, (u - centre[0]) * centre[2], (v - centre[1]) * centre[2]), _IDLE)
 
 
-@kernel
+@inner_kernel
 def _fit_into(candidates, surfaces, pair, key, factors, centre):
     """Polynomial by which areas are multiplied, and whether there is one: not where the nodes' own flats overlap whole.
 
@@ -89,7 +90,8 @@ def _fit_into(candidates, surfaces, pair, key, factors, centre):
             on_face, counts, u, v = _place(surfaces, a, b, facing, side == 1, node)
             if on_face and counts:
                 x, y = (u - centre[0]) * centre[2], (v - centre[1]) * centre[2]
-                terms[count] = (1.0, x, y, x * x, x * y, y * y)
+                row = terms[count]
+                row[0], row[1], row[2], row[3], row[4], row[5] = 1.0, x, y, x * x, x * y, y * y
                 weights[count] = 0.5 * share * surfaces.areas[node]
                 count += 1
     solved = False
@@ -98,7 +100,7 @@ def _fit_into(candidates, surfaces, pair, key, factors, centre):
     return solved
 
 
-@kernel
+@inner_kernel
 def _solve_into(terms, weights, wanted, n_terms, factors):
     """Factors of the first terms by which the weights get the moments wanted; whether they exist and keep all positive.
 
@@ -134,7 +136,7 @@ def _solve_into(terms, weights, wanted, n_terms, factors):
         for k in range(i + 1, n_terms):
             lack[i] -= moments[k, i] * lack[k]
         lack[i] /= moments[i, i]
-    factors[:n_terms] = lack
+    copy_into(lack, factors)
     factors[0] += 1.0
     least = np.inf
     for node in range(len(weights)):
@@ -142,14 +144,14 @@ def _solve_into(terms, weights, wanted, n_terms, factors):
     return least >= 0.0
 
 
-@kernel
+@inner_kernel
 def _value(factors, x, y):
     """Polynomial at a place [1]."""
     f = factors
     return f[0] + f[1] * x + f[2] * y + f[3] * x * x + f[4] * x * y + f[5] * y * y
 
 
-@kernel
+@inner_kernel
 def _place(surfaces, a, b, facing, second, node):
     """Whether a node is on the flat that meets, whether it counts in the overlap, and its place in the plane [m]."""
     body = b if second else a
@@ -181,27 +183,30 @@ def _place(surfaces, a, b, facing, second, node):
     return on_face, counts, x, y
 
 
-@kernel
+@inner_kernel
 def _flat_areas(surfaces, a, b, facing):
     """Areas of both flats [m2]."""
     i, j = surfaces.shape[a], surfaces.shape[b]
-    half, other = surfaces.half[i] - surfaces.chamfer[i], surfaces.half[j] - surfaces.chamfer[j]
-    return (
-        4.0 * half[(facing.axis_a + 1) % 3] * half[(facing.axis_a + 2) % 3],
-        4.0 * other[(facing.axis_b + 1) % 3] * other[(facing.axis_b + 2) % 3],
-    )
+    p, q = _half_edges(surfaces, i, facing.axis_a)
+    other_p, other_q = _half_edges(surfaces, j, facing.axis_b)
+    return 4.0 * p * q, 4.0 * other_p * other_q
 
 
-@kernel
+@borrowing_kernel
+def _half_edges(surfaces, shape, axis):
+    """Half the edges of a flat across an axis of its shape [m]."""
+    half, chamfer = surfaces.half[shape], surfaces.chamfer[shape]
+    return half[(axis + 1) % 3] - chamfer, half[(axis + 2) % 3] - chamfer
+
+
+@inner_kernel
 def _overlap(surfaces, a, b, facing):
     """Corners of the overlap of two flats in the plane of the first, (12, 2) [m], and how many there are.
 
     The second flat clipped at the first's edges one by one (Sutherland and Hodgman 1974).
     """
     i, j = surfaces.shape[a], surfaces.shape[b]
-    half, other = surfaces.half[i] - surfaces.chamfer[i], surfaces.half[j] - surfaces.chamfer[j]
-    limit = (half[(facing.axis_a + 1) % 3], half[(facing.axis_a + 2) % 3])
-    x, y = other[(facing.axis_b + 1) % 3], other[(facing.axis_b + 2) % 3]
+    limit, (x, y) = _half_edges(surfaces, i, facing.axis_a), _half_edges(surfaces, j, facing.axis_b)
     polygon, clipped = np.empty((12, 2)), np.empty((12, 2))
     c, s = facing.cosine, facing.sine
     for corner, (p, q) in enumerate(((x, y), (-x, y), (-x, -y), (x, -y))):
@@ -214,17 +219,19 @@ def _overlap(surfaces, a, b, facing):
             here, there = polygon[index], polygon[(index + 1) % count]
             beyond, next_beyond = sign * here[axis] - limit[axis], sign * there[axis] - limit[axis]
             if beyond <= 0.0:
-                clipped[kept] = here
+                clipped[kept, 0], clipped[kept, 1] = here[0], here[1]
                 kept += 1
             if beyond * next_beyond < 0.0:
-                clipped[kept] = here + beyond / (beyond - next_beyond) * (there - here)
+                share = beyond / (beyond - next_beyond)
+                for part in range(2):
+                    clipped[kept, part] = here[part] + share * (there[part] - here[part])
                 kept += 1
         polygon, clipped = clipped, polygon
         count = kept
     return polygon, count
 
 
-@kernel
+@inner_kernel
 def _integral_into(polygon, count, centre, moments):
     """Area of a convex polygon [m2]; its moments are added, of 1, x, y, x^2, x y, y^2.
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.geometry.level_set import box_distance, hollow_box_distance
 from blockshake.geometry.level_set_grid import corner_values, interpolate, locate
-from blockshake.jit import borrowing_kernel, inline_kernel, separate_kernel
+from blockshake.jit import borrowing_kernel, separate_kernel
 from blockshake.solvers.ls_dem.contact.packets import (
     AREA,
     BUSY,
@@ -81,7 +81,7 @@ def _area_inside(located, first, last):
     return ((a + b) + (c + d)) + ((e + f) + (g + h))
 
 
-@inline_kernel
+@borrowing_kernel
 def _pose(R, d, side):
     """Rotation, row by row, and shift from the owner's frame to the other's, as twelve numbers."""
     return (
@@ -90,7 +90,7 @@ def _pose(R, d, side):
     )  # fmt: skip
 
 
-@inline_kernel
+@borrowing_kernel
 def _follow(packets, packet, located, row, lane, pose):
     """Place of a node in the other's frame [m]; it is kept, with its change since the step before."""
     r00, r01, r02, r10, r11, r12, r20, r21, r22, d0, d1, d2 = pose
@@ -104,7 +104,7 @@ def _follow(packets, packet, located, row, lane, pose):
     return x, y, z
 
 
-@inline_kernel
+@borrowing_kernel
 def _find(packets, packet, located, row, lane, phi, nx, ny, nz, slope):
     """Write value, slope, normal and area inside of a node; whether it is inside or its spring is stretched."""
     located[row, PHI + lane] = phi

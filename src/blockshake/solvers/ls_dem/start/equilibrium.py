@@ -6,15 +6,16 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import eigsh, splu
 
 from blockshake.geometry.rotations import rotate_into, rotation_matrices
-from blockshake.jit import kernel
+from blockshake.geometry.vectors import add_impulse_into, difference, dot, matrix_product
+from blockshake.jit import inner_kernel, kernel
 from blockshake.solvers.ls_dem.contact.candidates import (
     empty_candidates,
     find_candidates,
     locate_pair_into,
     nearest_node,
 )
-from blockshake.solvers.ls_dem.contact.contact_forces import clear_loads, contact_forces_into, no_loads
-from blockshake.solvers.ls_dem.contact.packets import AREA, DAMPING_WEIGHT, LANES, NORMAL, PHI, PLACE
+from blockshake.solvers.ls_dem.contact.contact_forces import forces_into, no_loads
+from blockshake.solvers.ls_dem.contact.packets import AREA, DAMPING_WEIGHT, LANES, NORMAL, PHI, PLACE, triple
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
 from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series, normal_stiffness
 
@@ -52,7 +53,7 @@ def approach_equilibrium(assembly, state, near, joints):
 
     Notes
     -----
-    Newton's method on the forces of `contact_forces_into`, whose stiffness is the springs of the nodes in
+    Newton's method on the forces of `forces_into`, whose stiffness is the springs of the nodes in
     touch. At the first iteration all nodes within ``near`` count, those of an open joint across which gravity acts
     pulling it close; of hollow faces only the nodes at the rim. Where joints open or slide it may not converge, and
     relaxation has more to do. Bodies without inverse inertia do not turn.
@@ -70,8 +71,7 @@ def approach_equilibrium(assembly, state, near, joints):
     at_rest = _AT_REST * bodies.mass * np.linalg.norm(bodies.gravity) + 1e-300
     moves, solved, leaving = ways_to_move(bodies), ~bodies.driven, np.zeros(n_bodies, dtype=bool)
     for iteration in range(_MOST_ITERATIONS):
-        clear_loads(bodies, loads)
-        contact_forces_into(candidates, surfaces, interfaces, poses, 0.0, loads)
+        forces_into(bodies, candidates, surfaces, interfaces, poses, 0.0, loads)
         poses.position_before[:] = position
         poses.rotation_before[:] = rotation
         reach = near if iteration == 0 else 0.0
@@ -184,21 +184,29 @@ def joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
                     phi = located[PHI + lane]
                     if not phi < closed:
                         continue
-                    n, arm = np.zeros(3), np.zeros(3)
-                    for i in range(3):
-                        for j in range(3):
-                            n[i] += R[i, j] * located[NORMAL + j * LANES + lane]
-                            arm[i] += R[i, j] * (node[PLACE + j * LANES + lane] - surfaces.offset[other, j])
-                    if phi >= 0.0 and abs(n[0] * down[0] + n[1] * down[1] + n[2] * down[2]) < 0.5:
+                    n = matrix_product(
+                        R,
+                        (
+                            located[NORMAL + lane],
+                            located[NORMAL + LANES + lane],
+                            located[NORMAL + 2 * LANES + lane],
+                        ),
+                    )
+                    place = triple(candidates.packets, packet, PLACE, lane)
+                    arm = matrix_product(R, difference(place, surfaces.offset[other]))
+                    if phi >= 0.0 and abs(dot(n, down)) < 0.5:
                         continue
                     touching[pair] = True
                     half_area = 0.5 * node[AREA + lane]
                     area += half_area
                     weight += node[DAMPING_WEIGHT + lane]
-                    point = poses.position[other] + arm
-                    _relative_motion_into(point - poses.position[a], point - poses.position[b], B)
+                    at = poses.position[other]
+                    point = at[0] + arm[0], at[1] + arm[1], at[2] + arm[2]
+                    _relative_motion_into(
+                        difference(point, poses.position[a]), difference(point, poses.position[b]), B
+                    )
                     for column in range(12):
-                        along = n[0] * B[0, column] + n[1] * B[1, column] + n[2] * B[2, column]
+                        along = dot(n, B[:, column])
                         for i in range(3):
                             DB[i, column] = half_area * (k_s * B[i, column] + (k_n - k_s) * along * n[i])
                     for row in range(12):
@@ -206,18 +214,17 @@ def joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
                             for i in range(3):
                                 stiffness[pair, row, column] += B[i, row] * DB[i, column]
                     if phi >= 0.0:
-                        force = -half_area * k_n * phi * n
-                        pull[owner, :3] += force
-                        pull[owner, 3:] += np.cross(point - poses.position[owner], force)
-                        pull[other, :3] -= force
-                        pull[other, 3:] -= np.cross(arm, force)
+                        size = -half_area * k_n * phi
+                        force = size * n[0], size * n[1], size * n[2]
+                        add_impulse_into(1.0, force, difference(point, poses.position[owner]), pull[owner])
+                        add_impulse_into(-1.0, force, arm, pull[other])
         if area > 0.0:
             gamma = dashpot_coefficient(interfaces, a, b, interfaces.damping_ratio, k_n, area)
             relaxation[pair] = gamma * weight / (k_n * area)
     return stiffness, pull, touching, relaxation
 
 
-@kernel
+@inner_kernel
 def _relative_motion_into(arm_a, arm_b, B):
     """Motion of a point of body a against body b as a linear map of the displacements and rotations of both."""
     for i in range(3):

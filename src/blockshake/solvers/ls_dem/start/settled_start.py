@@ -8,11 +8,12 @@ from scipy.sparse.csgraph import connected_components
 from blockshake.dynamics.free_motion import spin_into
 from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
 from blockshake.geometry.structure import START_TOLERANCE
-from blockshake.jit import kernel
+from blockshake.geometry.vectors import difference, dot
+from blockshake.jit import loop_kernel
 from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_candidates, lists_expired
-from blockshake.solvers.ls_dem.contact.contact_forces import clear_loads, contact_forces_into, no_loads
+from blockshake.solvers.ls_dem.contact.contact_forces import forces_into, no_loads
 from blockshake.solvers.ls_dem.contact.packets import HELD, STRETCH
-from blockshake.solvers.ls_dem.contact.relative_pose import Poses
+from blockshake.solvers.ls_dem.contact.relative_pose import Poses, keep_poses
 from blockshake.solvers.ls_dem.progress import no_joints
 from blockshake.solvers.ls_dem.start.as_laid import joints_as_laid
 from blockshake.solvers.ls_dem.start.equilibrium import approach_equilibrium
@@ -74,7 +75,6 @@ def _relaxed(structure, assembly, state, joints):
     return free & ~np.isin(group, group[leaving]), relaxed, candidates, joints, steps, stable_step
 
 
-@kernel
 def settle(assembly, given, state, near, at_rest, leaving, candidates, joints):
     """Find the equilibrium under gravity near the given poses by dynamic relaxation.
 
@@ -105,52 +105,65 @@ def settle(assembly, given, state, near, at_rest, leaving, candidates, joints):
     is from then on and its contacts with it, so that the others can settle.
     """
     bodies, surfaces, interfaces = assembly.bodies, assembly.surfaces, assembly.interfaces
-    n_bodies, skin, dt = bodies.mass.size, assembly.skin, assembly.dt
-    velocity, momentum, spin = np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3))
-    turn = np.empty(3)
-    rotation, rotation_before = np.empty((n_bodies, 3, 3)), np.empty((n_bodies, 3, 3))
+    n_bodies, dt = len(bodies.mass), assembly.dt
+    rotation, rotation_before = np.empty((2, n_bodies, 3, 3))
     for body in range(n_bodies):
         rotation_matrix_into(given.orientation[body], rotation_before[body])
+        rotation_matrix_into(state.orientation[body], rotation[body])
     poses = Poses(state.position, rotation, given.position.copy(), rotation_before)
-    loads = no_loads(n_bodies, joints)
+    motion, expired = np.zeros((3, n_bodies, 3)), True
     for step in range(_MOST_STEPS):
-        for body in range(n_bodies):
-            rotation_matrix_into(state.orientation[body], rotation[body])
-        if step == 0 or lists_expired(
-            candidates, surfaces, bodies.driven, state.position, state.orientation, skin
-        ):
+        if expired:
             candidates, joints = find_candidates(
-                surfaces, bodies.driven, poses, state.orientation, skin, candidates, joints
+                surfaces, bodies.driven, poses, state.orientation, assembly.skin, candidates, joints
             )
             loads = no_loads(n_bodies, joints)
-        clear_loads(bodies, loads)
         # the way from the given poses stretches springs and is no velocity
-        contact_forces_into(candidates, surfaces, interfaces, poses, dt if step > 0 else 0.0, loads)
-        poses.position_before[:] = state.position
-        poses.rotation_before[:] = rotation
-        settled = True
-        for body in range(n_bodies):
-            if bodies.driven[body] or leaving[body]:
-                continue
-            radius = surfaces.radius[body]
-            for axis in range(3):
-                force, moment = loads.force[body, axis], loads.moment[body, axis]
-                if not (abs(force) < at_rest[body] and abs(moment) < at_rest[body] * radius):
-                    settled = False
-                force -= _LOCAL_DAMPING * abs(force) * np.sign(velocity[body, axis])
-                moment -= _LOCAL_DAMPING * abs(moment) * np.sign(momentum[body, axis])
-                velocity[body, axis] += dt * bodies.inverse_mass[body] * force
-                momentum[body, axis] += dt * moment
-                state.position[body, axis] += dt * velocity[body, axis]
-            spin_into(bodies.inverse_inertia[body], state.orientation[body], momentum[body], spin[body])
-            for axis in range(3):
-                turn[axis] = dt * spin[body, axis]
-            rotate_into(state.orientation[body], turn, state.orientation[body])
-            moved = np.sqrt(((state.position[body] - given.position[body]) ** 2).sum())
-            dot = abs((state.orientation[body] * given.orientation[body]).sum())
-            if moved + 2.0 * radius * np.sqrt(max(1.0 - dot * dot, 0.0)) > near:
-                leaving[body] = True
-                velocity[body], momentum[body], spin[body] = 0.0, 0.0, 0.0
+        forces_into(bodies, candidates, surfaces, interfaces, poses, dt if step > 0 else 0.0, loads)
+        settled, expired = _relax(
+            assembly, given, near, at_rest, candidates, loads, state, poses, motion, leaving
+        )
         if settled:
             return candidates, joints, step
     return candidates, joints, _MOST_STEPS
+
+
+@loop_kernel
+def _relax(assembly, given, near, at_rest, candidates, loads, state, poses, motion, leaving):
+    """One pseudo step of `settle`: whether all bodies were at rest before it, and whether the lists have expired.
+
+    ``motion`` (3, n_bodies, 3): velocity, angular momentum and spin; with poses, state and ``leaving`` changed.
+    """
+    bodies, surfaces, dt = assembly.bodies, assembly.surfaces, assembly.dt
+    velocity, momentum, spin = motion[0], motion[1], motion[2]
+    keep_poses(poses)
+    settled = True
+    for body in range(bodies.mass.size):
+        if bodies.driven[body] or leaving[body]:
+            continue
+        radius = surfaces.radius[body]
+        for axis in range(3):
+            force, moment = loads.force[body, axis], loads.moment[body, axis]
+            if not (abs(force) < at_rest[body] and abs(moment) < at_rest[body] * radius):
+                settled = False
+            force -= _LOCAL_DAMPING * abs(force) * np.sign(velocity[body, axis])
+            moment -= _LOCAL_DAMPING * abs(moment) * np.sign(momentum[body, axis])
+            velocity[body, axis] += dt * bodies.inverse_mass[body] * force
+            momentum[body, axis] += dt * moment
+            state.position[body, axis] += dt * velocity[body, axis]
+        spin_into(bodies.inverse_inertia[body], state.orientation[body], momentum[body], spin[body])
+        turn = dt * spin[body, 0], dt * spin[body, 1], dt * spin[body, 2]
+        rotate_into(state.orientation[body], turn, state.orientation[body])
+        away = difference(state.position[body], given.position[body])
+        cosine = 0.0
+        for part in range(4):
+            cosine += state.orientation[body, part] * given.orientation[body, part]
+        if np.sqrt(dot(away, away)) + 2.0 * radius * np.sqrt(max(1.0 - cosine * cosine, 0.0)) > near:
+            leaving[body] = True
+            for axis in range(3):
+                velocity[body, axis], momentum[body, axis], spin[body, axis] = 0.0, 0.0, 0.0
+    for body in range(bodies.mass.size):
+        rotation_matrix_into(state.orientation[body], poses.rotation[body])
+    return settled, lists_expired(
+        candidates, surfaces, bodies.driven, state.position, state.orientation, assembly.skin
+    )

@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.geometry.overlap import find_pairs
 from blockshake.geometry.vectors import cross, difference, dot, matrix_product, put_into, transposed_product
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.jit import borrowing_kernel, inner_kernel
 from blockshake.solvers.external_forces import closure_into
 from blockshake.solvers.nscd.contact.detection import detect_pair_into
 
@@ -49,7 +49,7 @@ class Contacts(NamedTuple):
     stopper: np.ndarray
 
 
-@kernel
+@inner_kernel
 def empty_contacts(capacity):
     """Arrays for that many contacts."""
     return Contacts(
@@ -61,7 +61,7 @@ def empty_contacts(capacity):
     )  # fmt: skip
 
 
-@kernel
+@inner_kernel
 def first_rows(contacts, count):
     """The first so many contacts, as views."""
     return Contacts(
@@ -120,7 +120,7 @@ def _detect_into(
     return count
 
 
-@kernel
+@inner_kernel
 def detect_contacts(
     bodies, polyhedra, placed, rotations, margin, shrink, layers, admittance, memory, n_stoppers
 ):
@@ -213,20 +213,22 @@ def effective_mass(w):
     return 1.0 / max(w[W_NN], max(w[W_11], w[W_22]))
 
 
-@kernel
+@inner_kernel
 def place_stoppers_into(bodies, stoppers, base, step, dt, theta, contacts):
-    """Write the stoppers, as contacts of the driven body ``base``, into the last rows.
+    """Write the stoppers, if any, as contacts of the driven body ``base`` into the last rows.
 
     The law of an implicit spring that only pushes, ``u_n + shift + p / s >= 0`` with ``s = theta dt^2 k``, times ``s
     / (s + m)``, m the mass of the body: so a stop without stiffness has the law ``p / m >= 0``, and no impulse.
     """
+    if stoppers is None:
+        return
     first = contacts.gap.size - stoppers.body.size
     toward = np.empty(3)
     for stopper in range(stoppers.body.size):
         row, body = first + stopper, stoppers.body[stopper]
         contacts.body_a[row], contacts.body_b[row] = base, body
         contacts.stopper[row] = stopper
-        contacts.home[row] = stoppers.point[stopper]
+        put_into(stoppers.point[stopper], contacts.home[row])
         contacts.friction[row] = 0.0
         admittance = theta * dt * dt * stoppers.stiffness[stopper]
         contacts.share[row] = admittance / (admittance + bodies.mass[body])
@@ -235,7 +237,7 @@ def place_stoppers_into(bodies, stoppers, base, step, dt, theta, contacts):
             bodies, stoppers, stopper, base, step.detection, contacts.arm_a[row], contacts.arm_b[row], toward
         )
         contacts.gap[row] = -closed
-        contacts.basis[row, 0] = -toward
+        put_into((-toward[0], -toward[1], -toward[2]), contacts.basis[row, 0])
 
 
 @borrowing_kernel

@@ -7,7 +7,7 @@ import numpy as np
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_rows
 from blockshake.geometry.vectors import put_into, rows_product
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.jit import borrowing_kernel, inner_kernel
 
 # Edge directions closer than this are one separating axis: only rounding tells them apart.
 _SAME_DIRECTION = 1e-9
@@ -135,7 +135,7 @@ def _directions(solid, edges):
     return kept
 
 
-@kernel
+@inner_kernel
 def empty_placed(polyhedra):
     """Arrays for `place_into`."""
     n_bodies = polyhedra.radius.size

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.jit import borrowing_kernel, inner_kernel
 
 _FREE = 6  # velocities of a body
 
@@ -30,7 +30,7 @@ class BlockSystem(NamedTuple):
     exchange: np.ndarray
 
 
-@kernel
+@inner_kernel
 def block_system(driven, body_a, body_b):
     """`BlockSystem` of bodies joined in pairs, its numbers not filled in.
 

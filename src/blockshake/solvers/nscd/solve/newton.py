@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.geometry.vectors import add_impulse_into, cross, matrix_product, transposed_product
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.jit import borrowing_kernel, inner_kernel
 from blockshake.solvers.nscd.contact.contacts import effective_mass, relative_velocity
 from blockshake.solvers.nscd.contact.law import coefficient_along, law_velocity
 from blockshake.solvers.nscd.solve.block_elimination import (
@@ -32,7 +32,7 @@ class NewtonSpace(NamedTuple):
     columns: np.ndarray
 
 
-@kernel
+@inner_kernel
 def newton_space(driven, body_a, body_b):
     """Work space for the contacts of a step between these bodies."""
     n_contacts = body_a.size

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.geometry.vectors import copy_into
+from blockshake.jit import borrowing_kernel, inner_kernel
 from blockshake.solvers.nscd.contact.contacts import contact_velocities_into
 from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into, relative_residual, sweep_into
 from blockshake.solvers.nscd.solve.newton import newton_space, newton_step_into
@@ -26,7 +27,17 @@ def _residual(contacts, v, floor, u):
     return relative_residual(contacts, u, floor)
 
 
-@kernel
+@borrowing_kernel
+def _size(impulse):
+    """Root of the sum of the squares of all impulses [N s]."""
+    squared = 0.0
+    for contact in range(impulse.shape[0]):
+        for axis in range(3):
+            squared += impulse[contact, axis] * impulse[contact, axis]
+    return np.sqrt(squared)
+
+
+@inner_kernel
 def _restart_into(bodies, inverse_inertia, contacts, floor, residual, v_free, v, u):
     """Sweeps from no impulse: their answer where it is nearer to the contact law, and the residual of the better one.
 
@@ -36,20 +47,20 @@ def _restart_into(bodies, inverse_inertia, contacts, floor, residual, v_free, v,
     impulses.
     """
     old_impulse, old_v = contacts.impulse.copy(), v.copy()
-    old_size = residual * max(np.sqrt((old_impulse**2).sum()), floor)
+    old_size = residual * max(_size(old_impulse), floor)
     contacts.impulse[:] = 0.0
-    v[:] = v_free
+    copy_into(v_free, v)
     for sweep in range(_LAST_SWEEPS):
         sweep_into(bodies, inverse_inertia, contacts, sweep % 2 == 0, v)
     new = _residual(contacts, v, floor, u)
-    if new * max(np.sqrt((contacts.impulse**2).sum()), floor) < old_size:
+    if new * max(_size(contacts.impulse), floor) < old_size:
         return new
-    contacts.impulse[:] = old_impulse
-    v[:] = old_v
+    copy_into(old_impulse, contacts.impulse)
+    copy_into(old_v, v)
     return residual
 
 
-@kernel
+@inner_kernel
 def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, tolerance, max_iterations, v):
     """Impulses that satisfy the contact law of all contacts at once.
 
@@ -97,12 +108,12 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
                 residual = _residual(contacts, v, floor, u)
                 if residual < best:
                     best = residual
-                    best_impulse[:] = contacts.impulse
-                    best_v[:] = v
+                    copy_into(contacts.impulse, best_impulse)
+                    copy_into(v, best_v)
                 if best <= tolerance:
                     break
-            contacts.impulse[:] = best_impulse
-            v[:] = best_v
+            copy_into(best_impulse, contacts.impulse)
+            copy_into(best_v, v)
             if best <= tolerance:
                 return iterations, best
             if iterations == max_iterations:
@@ -115,11 +126,11 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
         residual = _residual(contacts, v, floor, u)
         if residual < best:
             best = residual
-            best_impulse[:] = contacts.impulse
-            best_v[:] = v
+            copy_into(contacts.impulse, best_impulse)
+            copy_into(v, best_v)
         if best <= tolerance or iterations == max_iterations:
-            contacts.impulse[:] = best_impulse
-            v[:] = best_v
+            copy_into(best_impulse, contacts.impulse)
+            copy_into(best_v, v)
             if best > _TRUSTED:
                 best = _restart_into(bodies, inverse_inertia, contacts, floor, best, v_free, v, u)
             return iterations, best

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.geometry.vectors import matrix_product
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.jit import borrowing_kernel, inner_kernel
 from blockshake.solvers.nscd.solve.newton import linear_law_into
 from blockshake.solvers.nscd_deformable.solve.band_elimination import factor_into, solve_into
 from blockshake.solvers.nscd_deformable.solve.operator import extend_into, velocities_into
@@ -39,14 +39,14 @@ class Laws(NamedTuple):
     state: np.ndarray
 
 
-@kernel
+@inner_kernel
 def no_factor():
     """Factor of no contacts, before the first factorisation."""
     none = np.empty(0, np.int64)
     return Factor(none, none, none, np.empty((0, 3)), np.zeros(2), np.empty((0, 0)), none)
 
 
-@kernel
+@inner_kernel
 def empty_laws(n_contacts):
     """Arrays for the laws of so many contacts."""
     return Laws(np.empty((n_contacts, 3, 3)), np.empty((n_contacts, 3)), np.empty(n_contacts, np.int64))
@@ -113,7 +113,7 @@ def _system_into(laws, operator, row, A, last):
         last[3 * row[contact] : 3 * row[contact] + 3] = 3 * end + 2
 
 
-@kernel
+@inner_kernel
 def _factored(contacts, laws, setting, operator):
     """The system ``I + D W`` of the closed contacts, factored; its ``matrix`` is empty where it is singular."""
     n = contacts.gap.size
@@ -176,7 +176,7 @@ def _step_into(contacts, u, laws, matrix, last, x):
             closed += 1
 
 
-@kernel
+@inner_kernel
 def newton_step_into(problem, contacts, stiffness, fresh, operator, motion, laws, factor):
     """Replace the impulses by those of one Newton step, and the velocities with them.
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.geometry.vectors import cross, dot, matrix_product, put_into, transposed_product
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.jit import borrowing_kernel, inner_kernel
 from blockshake.solvers.nscd.contact.contacts import W_11, W_22, W_N1, W_N2, W_NN, relative_velocity
 from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into
 from blockshake.solvers.nscd_deformable.contact_points import anchored
@@ -44,7 +44,7 @@ class ContactMotion(NamedTuple):
     u: np.ndarray
 
 
-@kernel
+@inner_kernel
 def empty_motion(n_bodies, n_points, n_contacts):
     """Arrays for the velocities of so many bodies, lattice points and contacts."""
     return ContactMotion(
@@ -211,7 +211,7 @@ def _own_operators_into(problem, contacts, lever, held, W):
         w[W_11], w[W_22], w[W_N1], w[W_N2] = W[1, 1], W[2, 2], W[0, 1], W[0, 2]
 
 
-@kernel
+@inner_kernel
 def own_operators_into(problem, contacts):
     """Fill in ``contacts.delassus``: what each contact's velocity makes of its own impulse."""
     _own_operators_into(problem, contacts, np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)))
@@ -229,7 +229,7 @@ class Operator(NamedTuple):
     matrix: np.ndarray
 
 
-@kernel
+@inner_kernel
 def empty_operator(problem, contacts):
     """Operator that knows no contact yet, but which of them are coupled."""
     n, driven = contacts.gap.size, problem.bodies.driven
@@ -274,7 +274,7 @@ def _extend_into(problem, contacts, wanted, operator, G_a, G_b, block, lever_a, 
                     W[3 * other + j, 3 * contact + i] = block[i, j]
 
 
-@kernel
+@inner_kernel
 def extend_into(problem, contacts, wanted, operator):
     """Bring the contacts that are ``wanted``, bool (n_contacts,), into the operator."""
     elastic, driven = problem.elastic, problem.bodies.driven

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from blockshake.jit import borrowing_kernel, kernel
+from blockshake.geometry.vectors import copy_into
+from blockshake.jit import borrowing_kernel, inner_kernel
 from blockshake.solvers.nscd.contact.contacts import effective_mass
 from blockshake.solvers.nscd.contact.law import coefficient_along, law_velocity
 from blockshake.solvers.nscd.solve.gauss_seidel import relative_residual, solve_contact
@@ -61,7 +62,7 @@ def sweep_into(contacts, W, upwards, u):
                 u[other, 2] += row[3 * other + 2] * d[axis]
 
 
-@kernel
+@inner_kernel
 def solve_contacts_into(problem, contacts, floor, tolerance, max_iterations, motion, factor):
     """Impulses that satisfy the contact law of all contacts at once.
 
@@ -106,10 +107,10 @@ def solve_contacts_into(problem, contacts, floor, tolerance, max_iterations, mot
                 fresh = not made and residual > _SLOW * before
                 if residual < best:
                     best = residual
-                    best_impulse[:] = contacts.impulse
+                    copy_into(contacts.impulse, best_impulse)
                 if best <= tolerance:
                     break
-            contacts.impulse[:] = best_impulse
+            copy_into(best_impulse, contacts.impulse)
             velocities_into(problem, contacts, motion)
             if best <= tolerance or iterations == max_iterations:
                 return iterations, best, factor
@@ -123,9 +124,9 @@ def solve_contacts_into(problem, contacts, floor, tolerance, max_iterations, mot
         residual = relative_residual(contacts, motion.u, floor)
         if residual < best:
             best = residual
-            best_impulse[:] = contacts.impulse
+            copy_into(contacts.impulse, best_impulse)
         if best <= tolerance or iterations == max_iterations:
-            contacts.impulse[:] = best_impulse
+            copy_into(best_impulse, contacts.impulse)
             velocities_into(problem, contacts, motion)
             return iterations, best, factor
         sweeps *= 2
