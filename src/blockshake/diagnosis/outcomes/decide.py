@@ -93,7 +93,7 @@ def decide_outcomes(campaign, files, without=()):
         p=min(1.0, sum(map(chance, parts))) if parts else 1.0,
         where=f"falls of {name}" if parts else "no departure larger than chance",
         tests=names,
-        silent=tuple(one for one in names if one not in telling),
+        silent=(),
         n_rows=len(names),
         cannot_see=_not_seen(outcomes, names, telling, chances, fell),
     )

@@ -1,6 +1,7 @@
 """Figures of outcomes: which motions the body survived, and how often it fell beside what was predicted."""
 
 import numpy as np
+from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 
 from blockshake.pages.drawing import BLACK, BLUE, GREEN, GREY, ORANGE, new_figure
 
@@ -31,6 +32,8 @@ def plot_survival(scores):
         )
     panel.set_xscale("log")
     panel.set_yscale("log")
+    _plain_ticks(panel.xaxis)
+    _plain_ticks(panel.yaxis)
     panel.set_xlabel("peak acceleration [g]")
     panel.set_ylabel("peak velocity over peak acceleration [s]")
     panel.legend(loc="upper right")
@@ -52,12 +55,20 @@ def plot_fragility(scores):
         bins = np.array_split(np.argsort(values), min(_BINS, max(len(values) // 8, 1)))
         middle = [np.median(values[one]) for one in bins]
         fell = scores["fell"].to_numpy()
-        panel.plot(middle, [fell[one].mean() for one in bins], "o--", color=BLACK, label="measured")
+        panel.plot(middle, [fell[one].mean() for one in bins], "o--", color=BLACK, markersize=4.0, label="measured")
         for model, color in COLORS.items():
             chance = scores["chance"].sel(model=model).to_numpy()
             panel.plot(middle, [chance[one].mean() for one in bins], color=color, label=model)
         panel.set_xscale("log")
+        _plain_ticks(panel.xaxis)
         panel.set_xlabel(label)
     panels[0].set_ylabel("share of tests with a fall")
     panels[0].legend(loc="upper left")
     return figure
+
+
+def _plain_ticks(axis):
+    """Ticks at 1, 2 and 5 of every decade of a logarithmic axis, without powers."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axis.set_minor_locator(NullLocator())
