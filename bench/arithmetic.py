@@ -14,6 +14,7 @@ import numpy as np
 from force_evaluation import assembled_stack
 from measuring import process_seconds, spread
 
+from blockshake.jit import kernel
 from blockshake.solvers.ls_dem.contact.contact_forces import contact_forces_into
 from blockshake.solvers.ls_dem.contact.packets import LANES
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
@@ -35,7 +36,7 @@ def count_operations():
         ``operations_per_node``, ``packed_share`` of them in vector instructions, ``vector_bits``
         of the widest and ``gathers``: whether the loop looks up a grid.
     """
-    compiled = numba.njit(error_model="numpy")(contact_forces_into)
+    compiled = kernel(contact_forces_into)
     compiled(*assembled_stack(LsDemParameters()))
     return [loop for loop in map(operations, _innermost_loops(compiled)) if loop is not None]
 

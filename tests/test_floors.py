@@ -61,7 +61,7 @@ MOST_LINES = {
     "diagnosis/report": 1025, "virtual": 485, "own_files": 1145, "cost": 310, "diagnosis/flight": 1245,
     "diagnosis/outcomes": 965, "diagnosis/planning": 595, "study/extension": 310,
 }  # fmt: skip
-MOST_LINES_TOGETHER = 50_700
+MOST_LINES_TOGETHER = 53_700
 
 
 def place(name, floors):

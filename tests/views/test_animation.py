@@ -52,7 +52,7 @@ def test_magnification_is_of_the_motion_against_the_base(leaning_run):
     ("path", "keys", "words"),
     [
         ("x.avi", {}, "expected a suffix of moving pictures"),
-        ("x.gif", {"view": "top"}, "--view: top: expected front or side or 3d"),
+        ("x.gif", {"view": "top"}, "--view: top: expected front or side or far side or 3d"),
         ("x.gif", {"speed": 0.0}, "--speed: expected a positive number"),
         ("x.gif", {"magnification": float("nan")}, "--magnification: expected a positive number"),
     ],

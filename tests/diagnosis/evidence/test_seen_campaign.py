@@ -93,7 +93,7 @@ def test_a_campaign_of_which_no_test_is_seen_is_refused_with_the_reasons(folder)
     for name in OPEN:
         write_dataset(folder / f"{name}.nc", xr.load_dataset(folder / f"{name}.nc").isel(time=slice(40)))
     with pytest.raises(InputError, match="one-100 is not judged: the test is too short; two-100"):
-        steps.decide(str(folder), ())
+        steps.decide(str(folder), (), None)
 
 
 def test_sensors_without_stated_noise_are_the_best_instruments(folder):

@@ -204,7 +204,8 @@ MASS = made_up_cause(
     [
         ((), {"decision": "none", "causes": (), "word": "no misfit larger than chance"},
          "verdict.json: extension: expected a cause that acts in blocks, joints or forces and lasts; its word is: no"),
-        ((PITCH,), {}, "verdict.json: extension: blocks, joints or forces and lasts; found table-pitch"),
+        ((PITCH,), {}, "verdict.json: extension: expected a cause that acts in blocks, joints or forces and lasts; "
+         "found table-pitch"),
         ((BLOW,), {}, "found blow"),
         ((FREE,), {}, "found unknown-force"),
         ((CAUSES["weak-joint"],), {"structure": "0123456789ab"}, "study.yaml: cases: expected a case of the structure"),

@@ -55,7 +55,9 @@ def plot_fragility(scores):
         bins = np.array_split(np.argsort(values), min(_BINS, max(len(values) // 8, 1)))
         middle = [np.median(values[one]) for one in bins]
         fell = scores["fell"].to_numpy()
-        panel.plot(middle, [fell[one].mean() for one in bins], "o--", color=BLACK, markersize=4.0, label="measured")
+        panel.plot(
+            middle, [fell[one].mean() for one in bins], "o--", color=BLACK, markersize=4.0, label="measured"
+        )
         for model, color in COLORS.items():
             chance = scores["chance"].sel(model=model).to_numpy()
             panel.plot(middle, [chance[one].mean() for one in bins], color=color, label=model)

@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.pages.blocks import Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import svg_of
-from blockshake.pages.rows import face_markers, main_bodies
+from blockshake.pages.rows import bodies_by_height, face_markers
 from blockshake.pages.wording import MISSING, millimetres, model_label, number, percent, quantile_percent
 from blockshake.statistics.intervals import samples_needed
 from blockshake.study.ensembles.displacement_figure import interactive_displacements, plot_displacements
@@ -99,7 +99,7 @@ def sentences(content, name):
 
 def _figure(case, nominal):
     markers = face_markers(case.structure)
-    bodies = main_bodies(case.structure, markers)
+    bodies = bodies_by_height(case.structure, markers)[::-1]
     envelopes = {
         f"{model_label(model)}, {word} the cause": one.responses[model].envelope
         for model in case.responses

@@ -26,7 +26,7 @@ def plot_answer(structures, case, marker):
     for axes, structure in zip(drawn.flat, structures, strict=False):
         scene, pose = Scene(structure, "3d"), (structure.position, structure.orientation)
         draw_blocks(axes, scene, structure, *pose)
-        if structure.same_as(case.structure):
+        if structure.content == case.structure.content:
             row = [one.name for one in structure.file.markers].index(marker)
             at = scene.seen(marker_position(structure, *pose)[row])
             axes.plot(

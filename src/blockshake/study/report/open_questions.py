@@ -1,4 +1,4 @@
-"""What a study leaves open, and what would tell more, in computed sentences."""
+"""Open questions of a study, and measures that would tell more, in computed sentences."""
 
 from itertools import chain, count
 
@@ -27,7 +27,7 @@ _RARE = 0.05  # probability of a collapse that more samples are to exclude
 
 
 def next_steps(content, found):
-    """What would tell more, the most telling first, each with the figure that it follows from."""
+    """Measures that would tell more, the most telling first, each with the figure that it follows from."""
     steps, cases = [], content.cases
     short = [name for name in found if (one := cases[name]).settings["duration"] < strong_until(content, one)]
     for name in short[:1]:

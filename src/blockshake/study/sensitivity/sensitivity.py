@@ -3,8 +3,8 @@
 from itertools import pairwise
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy.stats import rankdata
 
 from blockshake.dynamics.system import Status
 from blockshake.errors import InputError
@@ -124,7 +124,7 @@ def sensitivity(ensemble, variables, controls=()):
     result["control"] = ("parameter", np.array([name in controls for name in variables], dtype=np.int8))
     completed = inputs[counted["status"].values == Status.COMPLETED]
     enough = len(completed) >= FEWEST_SAMPLES
-    known = np.corrcoef(rankdata(completed, axis=0), rowvar=False) if enough else np.nan
+    known = np.corrcoef(scipy.stats.rankdata(completed, axis=0), rowvar=False) if enough else np.nan
     result["correlation"] = (("parameter", "other"), np.broadcast_to(known, 2 * (len(variables),)))
     return _described(
         result.assign_coords(other=variables, marker=markers, parameter=variables), ensemble, counted, seed
