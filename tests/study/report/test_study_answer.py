@@ -166,7 +166,7 @@ def test_why_models_differ_follows_the_spin_that_impacts_keep(content, kept, wor
     envelope["joint_spin_kept"][:] = kept
     responses = {**case.responses, "nscd-rigid": replace(one, envelope=envelope)}
     said = parts(changed(content, FOURTH, responses=responses))[2]["beside"][0]
-    assert said.startswith(f"Under {FOURTH} NSCD rigid moves the blocks farther than NSCD elastic. At ")
+    assert said.startswith(f"Under {FOURTH} NSCD rigid collapses more often than NSCD elastic. At ")
     assert f"and {kept:.2f} by NSCD rigid; all above it" in said
     assert words in said
     assert "The largest slip is " in said

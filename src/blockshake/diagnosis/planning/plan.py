@@ -90,6 +90,12 @@ def plan_campaign(asked, costs, progress):
     for name in dict.fromkeys(name for one in campaigns for name in one.limits if one.limits[name]):
         progress(f"{name} against its rivals")
         told[name] = _told(name, campaigns)
+    if not told:
+        raise InputError(
+            asked.structure.source, "markers",
+            "expected sensors that show the pose of every block, such as three markers that are not on a line; these "
+            "show no effect of any size",
+        )  # fmt: skip
     few, readings = campaigns[:OF_ADDITIONS], readings[:OF_ADDITIONS]
     before, additions = _of_visible(few, told), []
 

@@ -259,9 +259,10 @@ def _why(content, found):
     if not apart:
         several = any(len(ended) > 1 for ended in found.values())
         return ["The models do not differ beyond the limits of their samples."] if several else []
-    _, _, name, *models = max(apart)
+    falls, _, name, *models = max(apart)
     case, (near, far) = content.cases[name], map(model_label, models)
-    words = [f"under {name} {far} moves the blocks farther than {near}"]
+    how = "collapses more often" if falls else "moves the blocks farther"
+    words = [f"under {name} {far} {how} than {near}"]
     if impacts := shares_at_impacts(case, models):
         joint, (less, more, plastic) = impacts
         words.append(

@@ -133,7 +133,7 @@ def models_apart(case, ended):
         ]
         sure = min(ended[model].counted for model in pair) >= SURE_FROM
         gap = max(float(one.min()) for one in limits) - min(float(one.max()) for one in limits)
-        if falls or (gap > 0.0 if sure else times > _FARTHER):
+        if falls or (high >= STILL and (gap > 0.0 if sure else times > _FARTHER)):
             apart.append(Apart(falls, times, case.name, near, far))
     return apart
 

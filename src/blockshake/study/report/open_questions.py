@@ -16,7 +16,7 @@ from blockshake.pages.wording import (
 )
 from blockshake.statistics.intervals import samples_needed, share_interval
 from blockshake.study.calibration.calibration import ALL
-from blockshake.study.ensembles.outcomes import shortfall
+from blockshake.study.ensembles.outcomes import count_outcomes, shortfall
 from blockshake.study.report.case_outcomes import models_apart, shares_at_impacts
 from blockshake.study.sensitivity.findings import influences, is_known
 
@@ -66,8 +66,12 @@ def next_steps(content, found):
     for name, ended in found.items():
         for model, one in ended.items():
             history = cases[name].responses[model].sensitivity.sel(quantity="history", marker=one.marker)
-            if is_known(history, "first_order") and (
-                beyond := influences(history, "first_order").beyond_chance
+            # a spread below a marker's noise needs no explanation
+            seen = float(history["spread"]) >= cases[name].marker_noise
+            if (
+                seen
+                and is_known(history, "first_order")
+                and (beyond := influences(history, "first_order").beyond_chance)
             ):
                 by_variable.setdefault(beyond[0].parameter, []).append(
                     (beyond[0].value, one.block, name, model)
@@ -106,6 +110,16 @@ def unknown(content):
     if short := [case.name for case in cases if case.settings["duration"] < strong_until(content, case)]:
         sentences.append(
             f"Whether blocks fall after the window, which ends in the strong motion: {listed(short)}."
+        )
+    falling = [
+        f"{case.name} by {model_label(model)} ({share_words(ended.falling, ended.counted)})"
+        for case in cases
+        for model, one in case.responses.items()
+        if (ended := count_outcomes(one.samples["status"])).falling
+    ]
+    if falling:
+        sentences.append(
+            f"Whether samples that fall as the window ends, and count as collapses, are caught: {listed(falling)}."
         )
     calibrated = chain.from_iterable((content.study.get("calibration") or {"cases": {}})["cases"].values())
     if assumed := sorted({case.name for case in cases} - set(calibrated)):
