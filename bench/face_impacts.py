@@ -6,6 +6,8 @@ be there.
 """
 
 import itertools
+import re
+from pathlib import Path
 from typing import NamedTuple
 
 import numba
@@ -22,30 +24,55 @@ from blockshake.simulation.simulate import simulate
 HALF, DENSITY, GRAVITY, RATE = 0.03, 1200.0, 9.81, 250.0  # m, kg/m3, m/s2, readings a second
 MASS = DENSITY * (2.0 * HALF) ** 3  # kg
 GYRATION = 2.0 * HALF**2 / 3.0  # moment of inertia about the mass centre over the mass [m2]
-DURATION = 0.08  # s; the face comes down after 24 to 33 ms
-FALLEN, SPINS, SLIPS = (0.04, 0.06, 0.1), (0.0, 2.0, 5.0, 10.0), (-0.2, 0.0, 0.2)  # rad, rad/s, m/s
+DURATION = 0.12  # s; the face comes down after some 30 ms, or later where the square hops first
+FALLEN, SPINS = (0.04, 0.06, 0.1), (0.0, 2.0, 5.0, 10.0)  # rad, rad/s
+SLIPS, HOPS = (-0.2, 0.0, 0.2), (0.0, 0.1, 0.2)  # m/s
 LEAD = 0.03  # s of turning at the spin of the start, by which it is tilted more: five readings fit before the impact
-FRICTION, RESTITUTION = 0.13, 0.45
+FRICTION, RESTITUTION = 0.13, 0.4  # where only another setting is changed
+RESTITUTIONS = (0.0, 0.2, 0.4, 0.6, 0.8)
 GROUND = 0.5  # m, width
+MEASURED = Path(__file__).parents[1] / "docs" / "results" / "measured.md"
 HEADER = ("model", "setting", "faces", "returned [%]", "spin kept", "quartiles")
+THEORY_HEADER = (
+    "restitution",
+    "sticks, in sequence",
+    "sticks, at once",
+    f"friction {FRICTION:g}, in sequence",
+    f"friction {FRICTION:g}, at once",
+    "no friction, in sequence",
+)
+
+
+class Row(NamedTuple):
+    """Of the table: ``returned``: share of the faces; ``kept``, ``lower``, ``upper``: spin kept and its quartiles."""
+
+    model: str
+    setting: str
+    faces: int
+    returned: float
+    kept: float
+    lower: float
+    upper: float
 
 
 class Start(NamedTuple):
-    """A square that touches the ground with its left edge: tilt [rad], spin [rad/s], speed of that edge along x [m/s].
+    """A square that touches the ground with its left edge.
 
-    The tilt is positive where the right edge is up, so that it falls to the right by a negative spin.
+    ``tilt`` [rad], positive where the right edge is up, so that it falls to the right by a negative ``spin`` [rad/s];
+    ``slip``, ``hop``: speed of the left edge along x and up [m/s].
     """
 
     tilt: float
     spin: float
     slip: float
+    hop: float = 0.0
 
 
 def starts():
     """All `Start`."""
     return [
-        Start(fallen - LEAD * spin, spin, slip)
-        for fallen, spin, slip in itertools.product(FALLEN, [-spin for spin in SPINS], SLIPS)
+        Start(fallen + LEAD * spin, -spin, slip, hop)
+        for fallen, spin, slip, hop in itertools.product(FALLEN, SPINS, SLIPS, HOPS)
     ]
 
 
@@ -53,7 +80,7 @@ def posture(start):
     """Place and velocity of the mass centre at a start: x, z, u, v [m, m/s], the touching edge at the origin."""
     c, s = np.cos(start.tilt), np.sin(start.tilt)
     x, z = HALF * (c - s), HALF * (c + s)
-    return x, z, start.slip - start.spin * z, start.spin * x
+    return x, z, start.slip - start.spin * z, start.hop + start.spin * x
 
 
 # ---- impacts in sequence ----
@@ -146,7 +173,7 @@ def sequence_path(start, restitution, friction, dt=1e-5):
     )  # fmt: skip
 
 
-def kept_at_once(restitution, friction, slip=0.0):
+def kept_in_sequence(restitution, friction, slip=0.0):
     """Spin kept by a square's one sequence of impacts, no gravity and no film in between.
 
     ``slip``: speed of the edge about which it turned before the impact, over half the side and the spin, positive
@@ -155,7 +182,19 @@ def kept_at_once(restitution, friction, slip=0.0):
     velocity = np.array([HALF + slip * HALF, -HALF, -1.0])
     arms = HALF * np.array([[-1.0, -1.0], [1.0, -1.0]])
     strike_in_sequence(velocity, arms, np.ones(2, np.bool_), GYRATION, restitution, friction)
-    return -velocity[2]
+    return -float(velocity[2])
+
+
+def kept_together(restitution, friction):
+    """Spin kept by a square's impact where Newton's law holds at both edges at the same instant, in closed form.
+
+    The far edge leaves with the restitution; the other one, which did not close, stays where the impulse at the far
+    edge pushes it down, and is lifted else.
+    """
+    # beyond this coefficient both edges stick: the ratio of the impulses of a pivot that sticks
+    lever = HALF * (1.0 - min(friction, HALF**2 / (GYRATION + HALF**2)))
+    lifted = (GYRATION - HALF * lever) / (GYRATION + HALF * lever)
+    return lifted - restitution * (1.0 - lifted) if lifted > 0.0 else -restitution
 
 
 # ---- the solvers ----
@@ -220,13 +259,100 @@ def read(paths):
 
 def row(model, setting, path, **settings):
     """Row of the table: of all starts, by a program ``path`` with its settings."""
-    found = summary(read([path(start, **settings) for start in starts()])).get("face", {})
-    if "returned" not in found:
-        return model, setting, 0, "", "", ""
+    found = summary(read([path(start, **settings) for start in starts()]))["face"]
     kept, returned = found["kept"], found["returned"]
-    return (
-        model, setting, returned["count"], f"{100.0 * returned['share']:.0f}", f"{kept['median']:.2f}",
-        f"{kept['lower']:.2f} to {kept['upper']:.2f}",
-    )  # fmt: skip
+    return Row(
+        model, setting, returned["count"], returned["share"], kept["median"], kept["lower"], kept["upper"]
+    )
 
 
+def measured_row():
+    """Row of the table as docs/results/measured.md has it of the square."""
+    line = next(line for line in MEASURED.read_text("utf-8").splitlines() if line.startswith("| measured |"))
+    count, returned, kept, lower, upper = map(float, re.findall(r"-?[\d.]+", line))
+    return Row("measured", "", int(count), returned / 100.0, kept, lower, upper)
+
+
+def rows():
+    """Rows of all settings, one after another."""
+    for e in RESTITUTIONS:
+        yield row(
+            "impacts in sequence", f"restitution {e:g}", sequence_path, restitution=e, friction=FRICTION
+        )
+    for mu in (0.0, 0.3, 0.9):
+        words = f"restitution {RESTITUTION:g}, friction {mu:g}"
+        yield row("impacts in sequence", words, sequence_path, restitution=RESTITUTION, friction=mu)
+    yield from _nscd_rows()
+    yield from _ls_dem_rows()
+
+
+def _nscd_rows():
+    usual = {"path": solver_path, "solver": "nscd-rigid", "restitution": RESTITUTION, "friction": FRICTION}
+    for e in RESTITUTIONS:
+        yield row("NSCD", f"restitution {e:g}", **usual | {"restitution": e})
+    base = f"restitution {RESTITUTION:g}"
+    for step in (1e-4, 1e-5):
+        yield row("NSCD", f"{base}, step {step:g} s", **usual, time_step=step)
+    yield row("NSCD", f"{base}, friction 0.9", **usual | {"friction": 0.9})
+    for layer in (1e-9, 1e-8, 1e-7):
+        yield row("NSCD", f"layer {layer:g} m3/N, step 0.0001 s", **usual, time_step=1e-4, layer=layer)
+
+
+def _ls_dem_rows():
+    def one(words, e=RESTITUTION, mu=FRICTION, stiffness=2e9, nodes=3, step=2e-5):
+        parameters = {
+            "normal_stiffness": stiffness,
+            "shear_stiffness": 0.5 * stiffness,
+            "node_spacing": 2.0 * HALF,
+        }
+        parameters["node_spacing"] /= nodes - 1
+        return row(
+            "LS-DEM", words, solver_path, solver="ls-dem", restitution=e, friction=mu, time_step=step,
+            parameters={f"ls_dem.{name}": value for name, value in parameters.items()},
+        )  # fmt: skip
+
+    for e in (*RESTITUTIONS[1:], 0.9):
+        yield one(f"restitution {e:g}", e)
+    base = f"restitution {RESTITUTION:g}"
+    yield one(f"{base}, friction 0.9", mu=0.9)
+    for stiffness in (2e8, 2e10):
+        yield one(f"{base}, {stiffness:g} N/m3, step 5e-06 s", stiffness=stiffness, step=5e-6)
+    yield one(f"{base}, step 5e-06 s", step=5e-6)
+    for nodes in (5, 9):
+        yield one(f"{base}, {nodes} nodes a side", nodes=nodes)
+
+
+def off(row, measured):
+    """How far a row is from the measured one: the larger difference of the share returned and of the spin kept [1]."""
+    return max(abs(row.returned - measured.returned), abs(row.kept - measured.kept))
+
+
+def face_impacts():
+    """The header and the cells of the table, and sentences on the setting of each model that comes nearest."""
+    measured, found = measured_row(), list(rows())
+    words = []
+    for model, own in itertools.groupby(found, lambda row: row.model):
+        best = min(own, key=lambda row: off(row, measured))
+        words.append(
+            f"Nearest to the measured by {model}: {best.setting}, {best.returned:.0%} returned and spin kept "
+            f"{best.kept:.2f}, off by {off(best, measured):.2f}. Its quartiles span "
+            f"{(best.upper - best.lower) / (measured.upper - measured.lower):.0%} of those measured."
+        )
+    cells = [
+        (
+            one.model, one.setting, one.faces, f"{100.0 * one.returned:.0f}", f"{one.kept:.2f}",
+            f"{one.lower:.2f} to {one.upper:.2f}",
+        )
+        for one in [measured, *found]
+    ]  # fmt: skip
+    return HEADER, cells, words
+
+
+def theory_rows():
+    """Rows of the spin kept at the instant of the impact, one of each restitution."""
+    for e in RESTITUTIONS:
+        kept = (
+            kept_in_sequence(e, np.inf), kept_together(e, np.inf), kept_in_sequence(e, FRICTION),
+            kept_together(e, FRICTION), kept_in_sequence(e, 0.0),
+        )  # fmt: skip
+        yield f"{e:g}", *(f"{one + 0.0:.2f}".replace("-0.00", "0.00") for one in kept)

@@ -15,6 +15,7 @@ from arrival_definitions import HEADER as ARRIVAL_HEADER
 from arrival_definitions import arrival_rows, arrival_words, stiffness_by_definition, top_peaks
 from convergence import HEADER as CONVERGENCE_HEADER
 from convergence import convergence_rows
+from face_impacts import THEORY_HEADER, face_impacts, theory_rows
 from hollow_faces import HEADER as HOLLOW_HEADER
 from hollow_faces import hollow_rows
 from key_tables import HEADER as KEYS_HEADER
@@ -266,6 +267,13 @@ def faults():
     return "\n\n".join([words, *tables])
 
 
+def faces_down():
+    """A square that comes down on a face, and the settings nearest to the measured one."""
+    header, rows, words = face_impacts()
+    wrapped = [textwrap.fill(line, 99, subsequent_indent="  ", break_on_hyphens=False) for line in words]
+    return "\n\n".join([markdown(header, rows), "\n".join(wrapped)])
+
+
 def keys_of(kind):
     """Maker of the table of the keys of a kind of file."""
     return lambda: markdown(KEYS_HEADER, key_rows(kind))
@@ -287,6 +295,8 @@ MAKERS = {
     "shear-damping": shear_damping,
     "joint-calibration": joint_calibration,
     "hollow-faces": lambda: markdown(HOLLOW_HEADER, hollow_rows()),
+    "face-impact-theory": lambda: markdown(THEORY_HEADER, theory_rows()),
+    "face-impacts": faces_down,
     "study-sensitivities": study_sensitivities,
     "study-shares": study_shares,
     "arrival-definitions": arrival_definitions,
