@@ -6,19 +6,26 @@ be there.
 """
 
 import itertools
+import os
 import re
+import tempfile
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 import numba
 import numpy as np
+from measured import SOLVERS, make_campaign
 from scipy.spatial.transform import Rotation
 
+from blockshake.diagnosis.flight.replay import FlightModel, filmed_replay, start_arc
 from blockshake.dynamics.motion import GroundMotion, rest_table
+from blockshake.forces.flight.arcs import find_arcs
 from blockshake.forces.flight.impacts import find_impacts, summary
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import build_structure
-from blockshake.measurement.poses.posed_test import PosedCampaign, PosedTest
+from blockshake.measurement.campaigns.campaign import load_campaign
+from blockshake.measurement.poses.posed_test import PosedCampaign, PosedTest, load_posed
 from blockshake.simulation.simulate import simulate
 
 HALF, DENSITY, GRAVITY, RATE = 0.03, 1200.0, 9.81, 250.0  # m, kg/m3, m/s2, readings a second
@@ -29,10 +36,18 @@ FALLEN, SPINS = (0.04, 0.06, 0.1), (0.0, 2.0, 5.0, 10.0)  # rad, rad/s
 SLIPS, HOPS = (-0.2, 0.0, 0.2), (0.0, 0.1, 0.2)  # m/s
 LEAD = 0.03  # s of turning at the spin of the start, by which it is tilted more: five readings fit before the impact
 FRICTION, RESTITUTION = 0.13, 0.4  # where only another setting is changed
-RESTITUTIONS = (0.0, 0.2, 0.4, 0.6, 0.8)
+RESTITUTIONS = (0.0, 0.2, 0.4, 0.5, 0.6, 0.8)
+REPLAYED = {  # restitution on the filmed starts
+    "nscd-rigid": ("NSCD", (0.35, 0.45, 0.5, 0.55, 0.6, 0.65)),
+    "ls-dem": ("LS-DEM", (0.35, 0.45, 0.6, 0.7, 0.8)),
+}
 GROUND = 0.5  # m, width
 MEASURED = Path(__file__).parents[1] / "docs" / "results" / "measured.md"
 HEADER = ("model", "setting", "faces", "returned [%]", "spin kept", "quartiles")
+REPLAY_HEADER = (*HEADER, "path error [mm]", "early error [mm]")
+FILMS = (
+    Path(os.environ.get("BLOCKSHAKE_SHARED") or MEASURED.parents[3] / "shared") / "measured" / "square-drops"
+)
 THEORY_HEADER = (
     "restitution",
     "sticks, in sequence",
@@ -99,7 +114,7 @@ def strike(velocity, arm, gyration, restitution, friction):
     gyration : float
         Moment of inertia about the mass centre over the mass [m2].
     restitution, friction : float
-        [1]; infinite friction always sticks.
+        [1]; infinite friction sticks, at a point that does not slide before.
 
     Returns
     -------
@@ -259,11 +274,27 @@ def read(paths):
 
 def row(model, setting, path, **settings):
     """Row of the table: of all starts, by a program ``path`` with its settings."""
-    found = summary(read([path(start, **settings) for start in starts()]))["face"]
+    return _row_of(model, setting, read([path(start, **settings) for start in starts()]))
+
+
+def _row_of(model, setting, impacts):
+    found = summary(impacts)["face"]
     kept, returned = found["kept"], found["returned"]
     return Row(
         model, setting, returned["count"], returned["share"], kept["median"], kept["lower"], kept["upper"]
     )
+
+
+def _rounded(value, digits=2):
+    """Decimals, without the sign of a zero."""
+    return f"{round(value, digits) + 0.0:.{digits}f}"
+
+
+def _cells(row):
+    return (
+        row.model, row.setting, row.faces, f"{100.0 * row.returned:.0f}", _rounded(row.kept),
+        f"{_rounded(row.lower)} to {_rounded(row.upper)}",
+    )  # fmt: skip
 
 
 def measured_row():
@@ -327,25 +358,24 @@ def off(row, measured):
     return max(abs(row.returned - measured.returned), abs(row.kept - measured.kept))
 
 
+def nearest(found, measured):
+    """A sentence on the row that comes nearest to the measured one, and its place among them."""
+    at = int(np.argmin([off(one, measured) for one in found]))
+    best = found[at]
+    spans = (best.upper - best.lower) / (measured.upper - measured.lower)
+    words = (
+        f"{best.model} comes nearest to the measured by {best.setting}: {best.returned:.0%} return, spin kept "
+        f"{_rounded(best.kept)}, the larger of both differences {off(best, measured):.2f}. Its quartiles span "
+        f"{spans:.0%} of those measured."
+    )
+    return words, at
+
+
 def face_impacts():
-    """The header and the cells of the table, and sentences on the setting of each model that comes nearest."""
+    """Cells of the table, and a sentence on the nearest setting of each model."""
     measured, found = measured_row(), list(rows())
-    words = []
-    for model, own in itertools.groupby(found, lambda row: row.model):
-        best = min(own, key=lambda row: off(row, measured))
-        words.append(
-            f"Nearest to the measured by {model}: {best.setting}, {best.returned:.0%} returned and spin kept "
-            f"{best.kept:.2f}, off by {off(best, measured):.2f}. Its quartiles span "
-            f"{(best.upper - best.lower) / (measured.upper - measured.lower):.0%} of those measured."
-        )
-    cells = [
-        (
-            one.model, one.setting, one.faces, f"{100.0 * one.returned:.0f}", f"{one.kept:.2f}",
-            f"{one.lower:.2f} to {one.upper:.2f}",
-        )
-        for one in [measured, *found]
-    ]  # fmt: skip
-    return HEADER, cells, words
+    models = [list(own) for _, own in itertools.groupby(found, lambda one: one.model)]
+    return [_cells(one) for one in [measured, *found]], [nearest(own, measured)[0] for own in models]
 
 
 def theory_rows():
@@ -355,4 +385,51 @@ def theory_rows():
             kept_in_sequence(e, np.inf), kept_together(e, np.inf), kept_in_sequence(e, FRICTION),
             kept_together(e, FRICTION), kept_in_sequence(e, 0.0),
         )  # fmt: skip
-        yield f"{e:g}", *(f"{one + 0.0:.2f}".replace("-0.00", "0.00") for one in kept)
+        yield f"{e:g}", *(_rounded(one, 3) for one in kept)
+
+
+def replayed():
+    """Cells and sentences of the filmed drops from their own starts; None where the films are not there.
+
+    Tests and settings of the solvers are those of docs/results/measured.md. The errors are the mean distances from the
+    film, over all and until 0.1 s after the first flight, as `diagnose` has them.
+    """
+    if not FILMS.is_dir():
+        return None
+    with tempfile.TemporaryDirectory() as folder:
+        campaign = load_campaign(make_campaign("square-drops", FILMS, Path(folder) / "drops", 1))
+        posed = load_posed(campaign, list(campaign.open))
+    arcs, _ = find_arcs(posed)
+    measured = _row_of("measured", "", find_impacts(posed, arcs))
+    cells, words = [(*_cells(measured), "", "")], []
+    for solver, (model, restitutions) in REPLAYED.items():
+        runs = [(_replayed(posed, arcs, solver, model, e)) for e in restitutions]
+        found, errors = zip(*runs, strict=True)
+        cells += [(*_cells(one), *(f"{value:.1f}" for value in own)) for one, own in runs]
+        sentence, at = nearest(found, measured)
+        path, early = np.argmin(errors, axis=0)
+        words.append(
+            f"{sentence} There the early error is {errors[at][1] / errors[early][1]:.1f} times the least, which is at "
+            f"{found[early].setting}, and that of whole paths {errors[at][0] / errors[path][0]:.1f} times the least, "
+            f"at {found[path].setting}."
+        )
+    return cells, words
+
+
+def _replayed(posed, arcs, solver, model, restitution):
+    """Row of the table of films, and the mean errors of path and early path [mm]."""
+    count, options = SOLVERS[solver]
+    tests = [(test, arc) for test in posed.tests if (arc := start_arc(test, arcs)) is not None][:count]
+    known = FlightModel(FRICTION, restitution)
+    runs = [filmed_replay(posed, *one, known, solver, **options) for one in tests]
+    again = replace(posed, tests=runs)
+    words = f"restitution {restitution:g}, {len(runs)} tests"
+    away = [_errors(*one, run) for one, run in zip(tests, runs, strict=True)]
+    return _row_of(model, words, find_impacts(again, find_arcs(again)[0])), 1e3 * np.mean(away, axis=0)
+
+
+def _errors(test, arc, run):
+    """Mean distance of a replay from its film, over all and until 0.1 s after the first flight [m]."""
+    away = np.linalg.norm((test.position[arc.first :] - run.position)[:, test.axes], axis=1)
+    early = np.searchsorted(test.time[arc.first :], test.time[arc.last] + 0.1)
+    return np.nanmean(away), np.nanmean(away[:early])
