@@ -257,17 +257,21 @@ def solver_path(start, restitution, friction, solver, layer=0.0, **options):
 # ---- how they are read ----
 
 
+def posed_square(tests):
+    """`PosedCampaign` of tests of the square over its ground."""
+    structure = square(0.0, FRICTION)
+    return PosedCampaign(structure, tests, 1, structure.solids["square"].polyhedron.vertices, 0.0)
+
+
 def read(paths):
     """The first face of each path that comes down, by the program that reads films: `FlightImpact`."""
-    structure = square(0.0, FRICTION)
-    vertices = structure.solids["square"].polyhedron.vertices
     tests = []
     for number, path in enumerate(paths):
         rotation = Rotation.from_rotvec(np.outer(-path[:, 2], [0.0, 1.0, 0.0])).as_matrix()
         place = np.column_stack([path[:, 0], np.zeros(len(path)), path[:, 1]])
         tests.append(PosedTest(f"{number:03d}", np.arange(len(path)) / RATE, place, rotation, planar=True))
     first = {}
-    for impact in find_impacts(PosedCampaign(structure, tests, 1, vertices, 0.0), []):
+    for impact in find_impacts(posed_square(tests), []):
         first.setdefault(impact.test, impact)
     return list(first.values())
 
@@ -364,7 +368,7 @@ def nearest(found, measured):
     best = found[at]
     spans = (best.upper - best.lower) / (measured.upper - measured.lower)
     words = (
-        f"{best.model} comes nearest to the measured by {best.setting}: {best.returned:.0%} return, spin kept "
+        f"{best.model} comes nearest to the measured faces at {best.setting}: {best.returned:.0%} return, spin kept "
         f"{_rounded(best.kept)}, the larger of both differences {off(best, measured):.2f}. Its quartiles span "
         f"{spans:.0%} of those measured."
     )

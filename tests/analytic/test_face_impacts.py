@@ -14,11 +14,16 @@ from face_impacts import (
     Start,
     kept_in_sequence,
     kept_together,
+    posed_square,
     read,
     square,
     strike,
     strike_in_sequence,
 )
+from scipy.spatial.transform import Rotation
+
+from blockshake.forces.flight.impacts import find_impacts
+from blockshake.measurement.poses.posed_test import PosedTest
 
 
 def _rocker(half, height):
@@ -139,3 +144,12 @@ def test_a_path_that_is_turned_back_is_read_as_it_was_made():
     impacts = read([np.column_stack([*reach, tilt])])
     assert [impact.kind for impact in impacts] == ["face"]
     assert impacts[0].kept == pytest.approx(-0.25, abs=0.02)
+
+
+def test_a_square_that_lies_on_its_face_and_turns_does_not_come_down():
+    """Noise of the tracking tilts it by a tenth of a milliradian; it turns about the vertical at 3 rad/s."""
+    time = np.arange(61) / RATE
+    turned = np.column_stack([1e-4 * np.random.default_rng(42).normal(size=(len(time), 2)), 3.0 * time])
+    place = np.tile([0.0, 0.0, HALF], (len(time), 1))
+    test = PosedTest("turning", time, place, Rotation.from_euler("xyz", turned).as_matrix(), planar=False)
+    assert list(find_impacts(posed_square([test]), [])) == []
