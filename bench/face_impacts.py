@@ -316,7 +316,7 @@ def rows():
         )
     for mu in (0.0, 0.3, 0.9):
         words = f"restitution {RESTITUTION:g}, friction {mu:g}"
-        yield row("impacts in sequence", words, sequence_path, restitution=RESTITUTION, friction=mu)
+        yield row("sequence of impacts", words, sequence_path, restitution=RESTITUTION, friction=mu)
     yield from _nscd_rows()
     yield from _ls_dem_rows()
 
@@ -368,7 +368,7 @@ def nearest(found, measured):
     best = found[at]
     spans = (best.upper - best.lower) / (measured.upper - measured.lower)
     words = (
-        f"{best.model} comes nearest to the measured faces at {best.setting}: {best.returned:.0%} return, spin kept "
+        f"{best.model}: nearest to the measured faces at {best.setting}: {best.returned:.0%} return, spin kept "
         f"{_rounded(best.kept)}, the larger of both differences {off(best, measured):.2f}. Its quartiles span "
         f"{spans:.0%} of those measured."
     )
