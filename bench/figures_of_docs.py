@@ -15,10 +15,13 @@ from arrival_definitions import HEADER as ARRIVAL_HEADER
 from arrival_definitions import arrival_rows, arrival_words, stiffness_by_definition, top_peaks
 from convergence import HEADER as CONVERGENCE_HEADER
 from convergence import convergence_rows
+from face_impacts import HEADER as FACE_HEADER
+from face_impacts import REPLAY_HEADER, THEORY_HEADER, face_impacts, replayed, theory_rows
 from hollow_faces import HEADER as HOLLOW_HEADER
 from hollow_faces import hollow_rows
 from key_tables import HEADER as KEYS_HEADER
 from key_tables import key_rows
+from measured import wrapped
 from paper_run import HEADER as PAPER_HEADER
 from paper_run import paper_rows
 from recorded_lmgc90 import SPEED_HEADER, speed_rows
@@ -266,6 +269,17 @@ def faults():
     return "\n\n".join([words, *tables])
 
 
+def _with_words(header, cells, words):
+    """A table, and sentences as items under it."""
+    return "\n\n".join([markdown(header, cells), wrapped("\n".join(f"- {one}" for one in words))])
+
+
+def faces_of_films():
+    """Faces of the filmed drops that come down; None where the films are not there."""
+    found = replayed()
+    return _with_words(REPLAY_HEADER, *found) if found else None
+
+
 def keys_of(kind):
     """Maker of the table of the keys of a kind of file."""
     return lambda: markdown(KEYS_HEADER, key_rows(kind))
@@ -287,6 +301,9 @@ MAKERS = {
     "shear-damping": shear_damping,
     "joint-calibration": joint_calibration,
     "hollow-faces": lambda: markdown(HOLLOW_HEADER, hollow_rows()),
+    "face-impact-theory": lambda: markdown(THEORY_HEADER, theory_rows()),
+    "face-impacts": lambda: _with_words(FACE_HEADER, *face_impacts()),
+    "face-impacts-of-films": faces_of_films,
     "study-sensitivities": study_sensitivities,
     "study-shares": study_shares,
     "arrival-definitions": arrival_definitions,

@@ -112,7 +112,8 @@ def _head():
     )
 
 
-def _campaign(name, source, target, seed):
+def make_campaign(name, source, target, seed):
+    """Folder of a campaign of a published set, half of its tests open; ``target`` is made."""
     command = [
         sys.executable,
         str(ROOT / "examples" / "measured_flights.py"),
@@ -127,7 +128,7 @@ def _campaign(name, source, target, seed):
 
 def _part(name, source, folder, halves):
     title, about, width = SETS[name]
-    campaign, output = _campaign(name, source, folder / name, 1), folder / f"{name}-output"
+    campaign, output = make_campaign(name, source, folder / name, 1), folder / f"{name}-output"
     verdict = blockshake.diagnose(campaign, output, effort="quick")
     decision, gain = load_decision(output / "decision.json"), xr.load_dataset(output / "gain.nc")
     evidence = xr.load_dataset(output / "evidence.nc")
@@ -135,7 +136,7 @@ def _part(name, source, folder, halves):
     save_picture(PAGE.parent / f"{name}-flights.png", plot_accelerations, evidence, shown)
     save_picture(PAGE.parent / f"{name}-errors.png", plot_errors, gain, COLORS)
     others = [
-        decide(_campaign(name, source, folder / f"{name}-{seed}", seed), []).decision
+        decide(make_campaign(name, source, folder / f"{name}-{seed}", seed), []).decision
         for seed in range(2, 2 + halves)
     ]
     lines = [

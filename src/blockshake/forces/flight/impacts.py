@@ -25,7 +25,7 @@ class FlightImpact(NamedTuple):
     ``test``, ``time`` [s]; ``kind``: corner, edge or face; ``restitution``: normal velocity of the contact after over
     before, reversed [1]; ``ratio``: tangential over normal impulse [1]; NaN of a face that comes down without a
     flight. ``kept``: spin after over before, along the spin before: negative where the body returns to the edge that
-    it came from [1].
+    it came from [1], about level axes of a face without a flight.
     """
 
     test: str
@@ -124,10 +124,10 @@ def _rocking(posed, test):
             yield FlightImpact(test.name, float(test.time[at]), "face", np.nan, np.nan, _kept(before, after))
 
 
-def _spin(time, rotation):
+def _spin(time, rotation):  # about level axes: a body that lies on its face and turns does not come down
     turned = Rotation.from_matrix(rotation)
     line = np.stack([np.ones_like(time), time - time.mean()], axis=1)
-    return np.linalg.lstsq(line, (turned * turned[len(time) // 2].inv()).as_rotvec(), rcond=None)[0][1]
+    return np.linalg.lstsq(line, (turned * turned[len(time) // 2].inv()).as_rotvec()[:, :2], rcond=None)[0][1]
 
 
 def summary(impacts):
