@@ -207,6 +207,7 @@ ROWS = {
         (f"{_SAMPLED}", {"materials.granit.density": {**_COV, "mean": 0.7}}, "expected a parameter that one of"),
         (f"{_SAMPLED}", {FRICTION: {**_COV, "mean": 0.7}, TURNED: {**_COV, "mean": 0.7}}, "every pair once"),
         (f"{_SAMPLED}.{FRICTION}.distribution", "normal", "'lognormal'"),
+        ("extension", {"cases": {"wall": "nothing"}}, "extension.cases"),
         (f"{_SAMPLED}.{FRICTION}.mean", 0.0, _LOWER),
         (f"{_SAMPLED}.materials.granite.density.mean", 1e10, "less than or equal to"),
         (f"{_SAMPLED}.shapes.block.hollow.mean", 0.1, "a hundredth of the smallest edge"),
@@ -253,6 +254,7 @@ ROWS = {
         ("diagnosis.effort", "most", "'quick', 'standard' or 'deep'"),
     ],
     "structure": [
+        ("extension", 7, "valid string"),
         ("gravity", [0.0, 0.0], "gravity"),
         ("materials.granite.density", 0.0, _AT_LEAST),
         ("materials.granite.youngs_modulus", 0.1, _AT_LEAST),
