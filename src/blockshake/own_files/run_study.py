@@ -9,7 +9,7 @@ from pathlib import Path
 
 import yaml
 
-from blockshake.errors import InputError
+from blockshake.errors import INTERRUPTED, InputError
 from blockshake.files import check_output, load_yaml, write_text
 from blockshake.own_files.run_workflow import WorkflowError, cores_of, run_workflow, workflow_command
 from blockshake.simulation.models import MODELS
@@ -75,7 +75,11 @@ def run_study(file, output=None, cores=None, case=None, say=print):
     try:
         run_workflow(workflow_command(cores, folder, path, *target), heard)
     except WorkflowError as stopped:
-        if not heard.ending:
+        if stopped.exit_code == INTERRUPTED:
+            say(
+                f"{config.name}: interrupted; finished samples are kept, and the same command goes on from them"
+            )
+        elif not heard.ending:
             sys.stderr.write("\n".join([*heard.last, ""]))
         raise stopped from None
     shown = [report.with_suffix(".html"), report.with_suffix(".pdf"), folder / "results" / config.name]

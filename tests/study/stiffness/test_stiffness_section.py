@@ -25,4 +25,4 @@ def test_cases_of_unlike_blocks_have_their_own_stiffness(copied):
     apart = load_content(study.study, study.results, study.logs)
     assert [one.cases for one in apart.calibrated] == [("configuration-1",), ("configuration-4",)]
     captions = " ".join(getattr(block, "caption", "") for block in stiffness(apart).blocks)
-    assert "10 samples; configuration-4 (after" in captions
+    assert "10 samples; configuration-4." in captions

@@ -3,6 +3,7 @@
 from collections import defaultdict
 
 from blockshake.errors import InputError
+from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
 
 
@@ -12,9 +13,18 @@ def outcome_lines(campaign):
     Raises
     ------
     InputError
-        A motion that is not at hand.
+        Another number of free bodies than one, no open test, a motion that is not at hand.
     """
     opened = campaign.open.values()
+    free = int((~load_structure(campaign.structure).driven).sum())
+    if free != 1:
+        raise InputError(
+            campaign.structure, "bodies", f"expected one body that is not driven, of outcomes; found {free}"
+        )
+    if not opened:
+        raise InputError(
+            campaign.folder / "campaign.yaml", "tests", "expected a test with the role fit or select"
+        )
     fell = sum(test.outcome == "fell" for test in opened)
     lines = [
         f"campaign {campaign.name} on {campaign.structure}: {len(campaign.tests)} tests of which the outcome alone is "
