@@ -26,10 +26,10 @@ class DecidedCampaign(NamedTuple):
     evidence: xr.Dataset
 
 
-def decide(folder, without, files):
+def decide(folder, without, files=None):
     """`DecidedCampaign`: the open tests read, the faults of sensors taken out, and what acts decided.
 
-    ``files.outcomes`` are the batches of `simulate_outcomes`, empty of a campaign with readings.
+    ``files.outcomes`` are the batches of `simulate_outcomes`; a campaign with readings has none.
 
     Raises
     ------
