@@ -60,11 +60,21 @@ def test_what_stands_and_what_may_collapse_is_that_of_the_samples(content):
     assert f"none of 28 runs by 4 models collapses; its probability is below {upper:.0f} %" in stands
     # one collapsed and one failed of six
     assert may.endswith(": of the runs, 1 of 5 by NSCD rigid do, and none by the others.")
-    lower, upper = (100.0 * one for one in share_interval(1, 5))
+    lower, upper = (100.0 * one for one in share_interval(1, 5, 1))
     assert box.facts[2][1:] == (
         "1 of 5",
         f"{FOURTH} by NSCD rigid: probability {lower:.0f} to {upper:.0f} %, 95 % limits",
     )
+
+
+def test_samples_that_were_not_down_when_the_window_ended_are_said_to_fall_still(content):
+    one = content.cases[FIRST].responses["nscd-rigid"]
+    size = one.samples.sizes["sample"]
+    fell = with_statuses(content, FIRST, "nscd-rigid", ["falling"] * size)
+    _, table, _ = parts(fell)
+    cell = next(cell for cell in table.rows[0][1:] if "collapse" in cell and "still fall" in cell)
+    assert cell.startswith(f"all {size} samples collapse ({size} of them still fall as the window ends): ")
+    assert any(line.startswith("Whether samples that fall as the window ends") for line in unknown(fell))
 
 
 def test_a_study_whose_samples_all_fall_says_so(content):
@@ -213,7 +223,7 @@ def test_next_steps_follow_the_results(content):
 def test_gaps_beyond_the_first_page_are_told_all_the_same(content):
     gaps = unknown(content)
     assert any("which is assumed and not calibrated: configuration-4." in one for one in gaps)
-    assert any("peaks are lower limits: configuration-4 by NSCD rigid." in one for one in gaps)
+    assert any("peaks are lower limits: configuration-4 by NSCD rigid (" in one for one in gaps)
     assert any("fewer than 59 samples bear no limits" in one for one in gaps)
     assert any(one == "How far blocks without a marker move: 4 of configuration-4." for one in gaps)
 

@@ -1,16 +1,11 @@
 """Sections of the report on filmed flights."""
 
-from typing import NamedTuple
-
 import numpy as np
-import xarray as xr
 
 from blockshake.diagnosis.answer.answer import ODDS
-from blockshake.diagnosis.answer.decision import Decision
 from blockshake.diagnosis.flight.causes import CAUSES
 from blockshake.diagnosis.flight.decide import estimate_in_si
 from blockshake.diagnosis.flight.figure import plot_accelerations, plot_errors
-from blockshake.diagnosis.verdict.verdict import Verdict
 from blockshake.diagnosis.wording import percent_words, times_words
 from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import BLUE, GREEN, GREY, ORANGE, svg_of
@@ -26,22 +21,13 @@ _WORDS = {
 }
 
 
-class FoundFlights(NamedTuple):
-    """Verdict, decision, evidence of `DecidedFlights` and scores of `flight_gain` (None where none were measured)."""
-
-    verdict: Verdict
-    decision: Decision
-    evidence: xr.Dataset
-    gain: xr.Dataset | None
-
-
 def answer_section(found):
     """The answer, the size of its causes, and what the poses do not show."""
     verdict, decision = found.verdict, found.decision
     causes = [part.causes[0] for part in decision.parts]
     words = sentence_case(verdict.word)
     if causes:
-        acting = "; beside it ".join(map(_cause_words, causes))
+        acting = "; beside it ".join(cause_words(cause, TITLES[cause.name]) for cause in causes)
         words = sentence_case(f"{verdict.word}: {acting}")
     facts = tuple(map(_largest, causes[:1]))
     share = found.evidence.attrs["explained_share"]
@@ -78,9 +64,10 @@ def _largest(cause):
     return f"{name} of {TITLES[cause.name]}", estimate_in_si(estimate), "90 % interval"
 
 
-def _cause_words(cause):
+def cause_words(cause, title):
+    """A cause with its body and its sizes in their own units."""
     sizes = ", ".join(f"{name} {estimate_in_si(one)}" for name, one in cause.parameters.items())
-    return f"{TITLES[cause.name]}, {cause.place['body']} ({sizes})"
+    return f"{title}, {cause.place['body']} ({sizes})"
 
 
 def _gain_words(verdict):

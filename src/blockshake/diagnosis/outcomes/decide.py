@@ -16,9 +16,9 @@ from blockshake.diagnosis.outcomes.posterior import (
     prior,
     unknowns_of,
 )
-from blockshake.diagnosis.outcomes.runs import free_body
 from blockshake.diagnosis.outcomes.unknowns import UNKNOWNS, largest_extent, value_of
 from blockshake.geometry.structure import load_structure
+from blockshake.measurement.checks.outcomes import standing_body
 
 _QUANTILES = (0.05, 0.5, 0.95)
 _DECIDED = 0.02  # chance of the other outcome, below which a test tells nothing
@@ -47,7 +47,7 @@ def decide_outcomes(campaign, files, without=()):
     """
     outcomes, names = load_outcomes(files), list(campaign.open)
     structure = load_structure(campaign.structure)
-    body = free_body(structure)
+    body = standing_body(structure)
     name, extent = structure.body_names[body], largest_extent(structure, body)
     rows, fell = outcomes.rows(names), fell_in(campaign, names)
     weighed = {}

@@ -11,10 +11,10 @@ from blockshake.diagnosis.outcomes.unknowns import UNKNOWNS, model_at
 from blockshake.dynamics.intensity import motion_figures
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.system import FALLEN, FINISHED
-from blockshake.errors import InputError
 from blockshake.files import named_file
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import load_structure
+from blockshake.measurement.checks.outcomes import standing_body
 from blockshake.simulation.simulate import simulate
 from blockshake.store import structure_digest
 
@@ -26,23 +26,6 @@ _SEED = 42
 def solvers_of(draws):
     """Solvers by which tests are simulated: with few draws the one that takes longer steps alone."""
     return MODELS if draws > 4 else ("nscd-rigid",)
-
-
-def free_body(structure):
-    """Number of the one body that is not driven.
-
-    Raises
-    ------
-    InputError
-        There is another number of them, or the body touches no driven one.
-    """
-    free = np.flatnonzero(~structure.driven)
-    if len(free) != 1 or not structure.touching[free[0]].any():
-        found = f"found {len(free)}" if len(free) != 1 else "it touches nothing at the start"
-        raise InputError(
-            structure.source, "bodies", f"expected one body that stands on a driven one, of outcomes; {found}"
-        )
-    return int(free[0])
 
 
 def shares_of(number, draws):
@@ -74,7 +57,7 @@ def simulate_outcomes(campaign, batch, solver, draws, store):
         unknown)``. Along ``test``: ``pga`` [m/s2] and ``pgv`` [m/s] of the commanded motion along x.
     """
     structure = load_structure(campaign.structure)
-    body, identity = free_body(structure), structure_digest(structure)
+    body, identity = standing_body(structure), structure_digest(structure)
     names = list(campaign.tests)[batch * BATCH : (batch + 1) * BATCH]
     leans, shares, peaks = [], [], []
     for done, name in enumerate(names):

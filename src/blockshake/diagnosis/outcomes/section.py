@@ -1,15 +1,11 @@
 """Sections of the report on outcomes."""
 
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
-from blockshake.diagnosis.answer.decision import Decision
-from blockshake.diagnosis.flight.decide import estimate_in_si
+from blockshake.diagnosis.flight.section import cause_words
 from blockshake.diagnosis.outcomes.figure import plot_fragility, plot_survival
-from blockshake.diagnosis.verdict.verdict import Verdict
 from blockshake.diagnosis.wording import percent_words
 from blockshake.effects.registry import title_of
 from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
@@ -26,21 +22,12 @@ MODELS_IN_WORDS = {
 _CLASSES = (0.0, 0.1, 0.3, 0.7, 0.9, 1.0)  # of the predicted chance, for the reliability
 
 
-class FoundOutcomes(NamedTuple):
-    """Verdict, decision, evidence of `DecidedOutcomes` and scores of `outcome_gain` (None where none were measured)."""
-
-    verdict: Verdict
-    decision: Decision
-    evidence: xr.Dataset
-    gain: xr.Dataset | None
-
-
 def answer_section(found):
     """The answer, the size of its causes, and what the outcomes do not show."""
     causes = [part.causes[0] for part in found.decision.parts]
     words = found.verdict.word
     if causes:
-        words += ": " + "; beside it ".join(map(_cause_words, causes))
+        words += ": " + "; beside it ".join(cause_words(cause, title_of(cause.name)) for cause in causes)
     scores = found.evidence if found.gain is None else found.gain
     which = "open tests, which were fitted to" if found.gain is None else "sealed tests"
     chance, fell = scores["chance"].sel(model="extended").to_numpy(), scores["fell"].to_numpy() == 1
@@ -66,11 +53,6 @@ def answer_section(found):
             ),
         ),
     )
-
-
-def _cause_words(cause):
-    sizes = ", ".join(f"{name} {estimate_in_si(one)}" for name, one in cause.parameters.items())
-    return f"{title_of(cause.name)}, {cause.place['body']} ({sizes})"
 
 
 def balanced_accuracy(chance, fell):

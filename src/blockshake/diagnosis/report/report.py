@@ -54,9 +54,9 @@ def make_diagnosis_report(campaign, results, effort, track_record, html, pdf):
     """
     measured = load_campaign(campaign)
     if measured.still:
-        document = compose_flights(measured, Path(results))
+        document = compose_flights(measured, Path(results), effort)
     elif measured.by_outcomes:
-        document = compose_outcomes(measured, Path(results))
+        document = compose_outcomes(measured, Path(results), effort)
     else:
         document = compose_diagnosis(load_diagnosed(campaign, results, effort, track_record))
     write_html(html, document)

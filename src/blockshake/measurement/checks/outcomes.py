@@ -2,9 +2,28 @@
 
 from collections import defaultdict
 
+import numpy as np
+
 from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
+
+
+def standing_body(structure):
+    """Number of the one body that is not driven, whose outcomes are known.
+
+    Raises
+    ------
+    InputError
+        There is another number of them, or the body touches no driven one.
+    """
+    free = np.flatnonzero(~structure.driven)
+    if len(free) != 1 or not structure.touching[free[0]].any():
+        found = f"found {len(free)}" if len(free) != 1 else "it touches nothing at the start"
+        raise InputError(
+            structure.source, "bodies", f"expected one body that stands on a driven one, of outcomes; {found}"
+        )
+    return int(free[0])
 
 
 def outcome_lines(campaign):
@@ -13,14 +32,10 @@ def outcome_lines(campaign):
     Raises
     ------
     InputError
-        Another number of free bodies than one, no open test, a motion that is not at hand.
+        A structure of another kind, see `standing_body`, no open test, a motion that is not at hand.
     """
     opened = campaign.open.values()
-    free = int((~load_structure(campaign.structure).driven).sum())
-    if free != 1:
-        raise InputError(
-            campaign.structure, "bodies", f"expected one body that is not driven, of outcomes; found {free}"
-        )
+    standing_body(load_structure(campaign.structure))
     if not opened:
         raise InputError(
             campaign.folder / "campaign.yaml", "tests", "expected a test with the role fit or select"

@@ -17,7 +17,6 @@ from blockshake.pages.wording import (
     sentence_case,
     share_words,
 )
-from blockshake.statistics.intervals import share_interval
 from blockshake.study.ensembles.coverage import is_likely
 from blockshake.study.report.answer_figure import plot_answer
 from blockshake.study.report.case_outcomes import (
@@ -116,7 +115,7 @@ def _verdict(content, found):
 
     words = []
     if names := sides["stand"]:
-        upper = max(share_interval(0, one.counted)[1] for name in names for one in found[name].values())
+        upper = max(one.limits[1] for name in names for one in found[name].values())
         words.append(
             f"{named(names, 'stand')}: none of {count_words(runs(names), 'run')} by {_by(found, names)} collapses; "
             f"its probability is below {_whole(upper)} % (limit of 95 %)"
@@ -180,7 +179,7 @@ def _facts(content, found, shown):
         (
             "Samples that collapse",
             of,
-            f"{where}: probability {_limits(fell.collapsed, fell.counted)}, 95 % limits",
+            f"{where}: probability {_limits(fell)}, 95 % limits{_falling(fell)}",
         ),
     )
 
@@ -225,9 +224,9 @@ def _lines(content, found):
 
 
 def _done(one):
-    sure = _limits(one.collapsed, one.counted)
+    sure = _limits(one)
     if one.collapsed:
-        return f"{share_words(one.collapsed, one.counted)} samples collapse: {sure}"
+        return f"{share_words(one.collapsed, one.counted)} samples collapse{_falling(one)}: {sure}"
     if one.most < STILL:
         return f"stands, unmoved; collapse {sure}"
     left = f", {_length(one.end)} mm left" if np.isfinite(one.end) else ", still moving at the end"
@@ -235,10 +234,15 @@ def _done(one):
     return f"stands; {one.block} moves by {_length(one.peak)} mm ({spread}){left}; collapse {sure}"
 
 
-def _limits(collapsed, counted):
+def _limits(one):
     """Limits of the probability of a collapse, in words."""
-    lower, upper = map(_whole, share_interval(collapsed, counted))
-    return f"{lower} to {upper} %" if collapsed else f"below {upper} %"
+    lower, upper = map(_whole, one.limits)
+    return f"{lower} to {upper} %" if one.collapsed else f"below {upper} %"
+
+
+def _falling(one):
+    """Samples among the collapsed ones that were not down when the window ended, in words."""
+    return f" ({one.falling} of them still fall as the window ends)" if one.falling else ""
 
 
 def _figure(content, found, shown):

@@ -8,7 +8,7 @@ import xarray as xr
 
 from blockshake.pages.rows import face_markers
 from blockshake.simulation.rocking import plastic_shares
-from blockshake.statistics.intervals import SURE_FROM
+from blockshake.statistics.intervals import SURE_FROM, share_interval
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.ensembles.outcomes import count_outcomes
 
@@ -22,8 +22,9 @@ class Outcome(NamedTuple):
 
     Attributes
     ----------
-    collapsed, counted : int
-        Samples that collapsed or still fell, of those that count.
+    collapsed, falling, counted, failed : int
+        Samples that collapsed or still fell, those of them that still fell, of those that count; and failed ones, which
+        do not.
     block, marker : str
         The block that moves farthest, of those with markers.
     peak, least, most, end : float
@@ -36,7 +37,9 @@ class Outcome(NamedTuple):
     """
 
     collapsed: int
+    falling: int
     counted: int
+    failed: int
     block: str
     marker: str
     peak: float
@@ -50,6 +53,11 @@ class Outcome(NamedTuple):
     def share(self):
         """Share of the samples that collapsed [1]."""
         return self.collapsed / self.counted
+
+    @property
+    def limits(self):
+        """Interval of 95 % of the probability of a collapse [1], see `share_interval`."""
+        return share_interval(self.collapsed, self.counted, self.failed)
 
 
 class Apart(NamedTuple):
@@ -88,7 +96,9 @@ def _outcome(case, response):
     least = int(margins.argmin("joint")) if margins.size else None
     return Outcome(
         collapsed=ended.collapsed + ended.falling,
+        falling=ended.falling,
         counted=ended.counted,
+        failed=ended.failed,
         block=block,
         marker=marker,
         peak=peak,

@@ -16,7 +16,7 @@ from blockshake.pages.wording import (
 )
 from blockshake.statistics.intervals import samples_needed, share_interval
 from blockshake.study.calibration.calibration import ALL
-from blockshake.study.ensembles.outcomes import count_outcomes, shortfall
+from blockshake.study.ensembles.outcomes import count_outcomes
 from blockshake.study.report.case_outcomes import models_apart, shares_at_impacts
 from blockshake.study.sensitivity.findings import influences, is_known
 
@@ -111,12 +111,7 @@ def unknown(content):
         sentences.append(
             f"Whether blocks fall after the window, which ends in the strong motion: {listed(short)}."
         )
-    falling = [
-        f"{case.name} by {model_label(model)} ({share_words(ended.falling, ended.counted)})"
-        for case in cases
-        for model, one in case.responses.items()
-        if (ended := count_outcomes(one.samples["status"])).falling
-    ]
+    falling = _by_model(cases, lambda one: _ended(one).falling)
     if falling:
         sentences.append(
             f"Whether samples that fall as the window ends, and count as collapses, are caught: {listed(falling)}."
@@ -131,23 +126,13 @@ def unknown(content):
     }
     if bare:
         sentences.append(f"How far blocks without a marker move: {listed(list(bare.values()))}.")
-    cut = [
-        f"{case.name} by {model_label(model)}"
-        for case in cases
-        for model, one in case.responses.items()
-        if float(one.envelope["collapse_probability"]) > 0.0
-    ]
+    cut = _by_model(cases, lambda one: _ended(one).collapsed + _ended(one).falling)
     if cut:
         sentences.append(f"How far blocks that fell would have moved, peaks are lower limits: {listed(cut)}.")
-    failed = [
-        f"{model_label(model)}, {case.name} ({share_words(lost, one.samples.sizes['sample'])})"
-        for case in cases
-        for model, one in case.responses.items()
-        if (lost := shortfall(one.envelope).failed)
-    ]
+    failed = _by_model(cases, lambda one: _ended(one).failed)
     if failed:
         sentences.append(
-            f"How samples end that failed for a numerical reason: {'; '.join(failed)}. No statistic counts them; the "
+            f"How samples end that failed for a numerical reason: {listed(failed)}. No statistic counts them; the "
             "limits of probabilities allow for either end."
         )
     if chaotic := _chaotic(cases):
@@ -171,6 +156,20 @@ def unknown(content):
             "limits."
         )
     return sentences
+
+
+def _ended(one):
+    return count_outcomes(one.samples["status"])
+
+
+def _by_model(cases, count):
+    """Cases with the models of which some samples count, and their share of all samples, in words."""
+    return [
+        f"{case.name} by {model_label(model)} ({share_words(some, one.samples.sizes['sample'])})"
+        for case in cases
+        for model, one in case.responses.items()
+        if (some := count(one))
+    ]
 
 
 def _chaotic(cases):
