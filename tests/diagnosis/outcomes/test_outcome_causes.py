@@ -166,3 +166,22 @@ def test_bad_outcomes_are_refused(tmp_path, changed, said):
 def test_draws_of_other_tests_are_others():
     assert not np.allclose(shares_of(0, DRAWS)[1:], shares_of(1, DRAWS)[1:])
     assert (np.abs(shares_of(7, DRAWS)) <= 1.0).all()
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        ("name,motion,scale,outcome\na,alkion,1.0,fell\n", "tests.csv: expected .* the table has no role"),
+        ("name;role\na;fit\n", "has no name and no role"),
+        ("name,motion,scale,role,outcome\n", "has no row"),
+        (None, "tests: expected a list, or a CSV table"),
+    ],
+)
+def test_a_wrong_table_of_tests_is_named_once(tmp_path, table, said):
+    (tmp_path / "column.yaml").write_text(yaml.safe_dump(STRUCTURE))
+    if table:
+        (tmp_path / "tests.csv").write_text(table)
+    mapping = {"name": "bad", "structure": "column.yaml", "tests": "tests.csv"}
+    (tmp_path / "campaign.yaml").write_text(yaml.safe_dump(mapping))
+    with pytest.raises(InputError, match=said):
+        load_campaign(tmp_path)

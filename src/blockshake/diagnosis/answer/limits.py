@@ -48,8 +48,8 @@ def limits_of(evidence, slabs, closed, without=()):
         if effect.turns and name not in without:
             variants = list(zip(*(effect.turns(slab) for slab in slabs), strict=True))
             limits[name] = _by_place(name, slab_turns(slabs), {EVERYWHERE: variants}, needed_of_slab(name))
-        if effect.lifts and name not in without:
-            limits[name] = {EVERYWHERE: _lifted(name, slabs)}
+        if effect.lifts and name not in without and any(len(slab.at) for slab in slabs):
+            limits[name] = {EVERYWHERE: _lifted(name, [slab for slab in slabs if len(slab.at)])}
     if evidence is not None:
         loudest, tried = evidence.usual, {}
         for (name, place), variants in evidence.tried.variants.items():

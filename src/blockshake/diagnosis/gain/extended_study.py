@@ -129,7 +129,7 @@ def extend_study(verdict, study, output):
     header = _header(verdict, found, causes)
     texts = {one.path: header + _text(one.mapping) for one in extended.values()}
     texts |= {Path(ensemble["correlation"]): target.to_csv()} if target is not None else {}
-    texts[output] = f"{header}# Run: snakemake -c2 --configfile {output}\n{_text(whole)}"
+    texts[output] = f"{header}# Run: blockshake study {output}\n{_text(whole)}"
     _write(texts, output)
     for one in extended.values():
         for mesh in {shape.mesh for shape in one.structure.file.shapes.values()} - {None}:

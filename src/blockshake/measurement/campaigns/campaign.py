@@ -181,10 +181,18 @@ def load_campaign(folder):
 def _listed(folder, name, path):
     """Tests of a CSV table, a mapping each; empty cells are left out."""
     check_plain(name, path, "tests")
+    if not isfile(folder / name):
+        raise InputError(path, "tests", f"expected a list, or a CSV table in {folder}; it has no {name}")
     try:
         rows = pd.read_csv(folder / name, dtype=str, keep_default_na=False)
     except (OSError, ValueError) as error:
-        raise InputError(path, "tests", f"expected a list, or a CSV table in {folder}; {error}") from None
+        raise InputError(folder / name, "", f"expected a table of comma-separated values; {error}") from None
+    missing = [key for key in ("name", "role") if key not in rows.columns]
+    if missing or rows.empty:
+        wrong = f"has no {' and no '.join(missing)}" if missing else "has no row"
+        raise InputError(
+            folder / name, "", f"expected a row a test and the columns name and role; the table {wrong}"
+        )
     return [
         {
             key: float(cell) if key == "scale" and plain_number(cell) else cell
