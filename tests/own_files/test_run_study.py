@@ -107,6 +107,16 @@ def test_a_twin_counts_no_sample_twice(folder):
     assert len(progress.done["weak", "ls-dem"]) == 1
 
 
+def test_a_model_with_a_name_of_its_own_is_told_by_it(folder):
+    study = STUDY | {"models": STUDY["models"] | {"ls-dem-as-printed": {"time_step": 5e-5}}}
+    (folder / "study.yaml").write_text(yaml.safe_dump(study))
+    heard = []
+    progress = of_study._Progress(load_config("study.yaml"), 1, None, heard.append)
+    for number in range(10):
+        progress(sample("weak", "ls-dem-as-printed", number, 1.0))
+    assert heard[-1].startswith("weak, LS-DEM as printed: 10 of 10 samples; 10 of 60 runs; ")
+
+
 def test_the_study_in_the_very_folder_of_the_output_is_left_as_it_is(folder, workflow):
     before = (folder / "study.yaml").read_bytes()
     assert main(["study", "study.yaml", "--output", "."]) == 0

@@ -12,7 +12,7 @@ import yaml
 from blockshake.errors import INTERRUPTED, InputError
 from blockshake.files import check_output, load_yaml, write_text
 from blockshake.own_files.run_workflow import WorkflowError, cores_of, run_workflow, workflow_command
-from blockshake.simulation.models import MODELS
+from blockshake.pages.wording import model_label
 from blockshake.study.config import load_config
 from blockshake.working_folder import hold
 
@@ -150,7 +150,7 @@ class _Progress:
         count, wanted = len(self.done[pair]), self.wanted[pair]
         if count == wanted or self._is_due():
             share = f"{self.total - self._runs_left()} of {self.total} runs"
-            label = MODELS[pair[1]].label
+            label = model_label(pair[1])
             self._say(f"{pair[0]}, {label}: {count} of {wanted} samples; {share}; {self._left()}")
 
     def _say(self, words):
