@@ -143,7 +143,7 @@ def _part(name, source, folder, halves):
         f"## {title}, {datetime.date.today().isoformat()}", about,
         f"{len(decision.tests)} open and {gain.sizes['test']} predicted sealed tests. The verdict: "
         f"**{verdict.decision}** ({verdict.word}).",
-        "\n".join(f"- {line}" for line in _causes(decision)),
+        "\n".join(f"- {line}" for line in causes_in_words(decision, TITLES)),
         f"![acceleration beyond gravity over velocity]({name}-flights.png)",
         "Beside it the tool says:", "\n".join(f"- {line}." for line in verdict.caveats),
         _gains(load_json(output / "verdict.json")), _errors(gain, width),
@@ -189,7 +189,8 @@ def _faces_row(words, posed, arcs):
     )
 
 
-def _causes(decision):
+def causes_in_words(decision, titles):
+    """A line a cause: sizes with intervals of 90 %, gain and odds; ``titles``: words by name."""
     for part in decision.parts:
         for cause in part.causes:
             sizes = ", ".join(
@@ -201,7 +202,7 @@ def _causes(decision):
                 if cause is part.causes[0]
                 else f"; less likely by {np.exp(cause.odds):.2g} times, not told apart"
             )
-            yield f"{TITLES[cause.name]}: {sizes}; gain {cause.gain:.0f} nats{odds}"
+            yield f"{titles[cause.name]}: {sizes}; gain {cause.gain:.0f} nats{odds}"
 
 
 def _gains(verdict):

@@ -12,11 +12,11 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from measured import wrapped
+from measured import causes_in_words, wrapped
 
 import blockshake
 from blockshake.diagnosis.answer.decision import load_decision
-from blockshake.diagnosis.outcomes.decide import fell_in
+from blockshake.diagnosis.outcomes.decide import CAUSES, fell_in
 from blockshake.diagnosis.outcomes.figure import plot_fragility, plot_survival
 from blockshake.diagnosis.outcomes.runs import BATCH, simulate_outcomes
 from blockshake.diagnosis.outcomes.section import MODELS_IN_WORDS, balanced_accuracy, reliability
@@ -30,6 +30,7 @@ from blockshake.store import Store
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "results" / "granite-rocks.md"
 ROCKS = ("SP1", "SP2")
+TITLES = {name: title_of(name) for name in CAUSES}
 _EVERY = 4  # batch is simulated by LS-DEM
 HEAD = (
     "# Granite rocks on a shake table\n\n"
@@ -73,7 +74,7 @@ def part(rock, folder, output, store):
         f"## {rock}, {datetime.date.today().isoformat()}",
         f"{len(fell)} open tests, of which {fell.sum()} ended in a fall, and {gain.sizes['test']} sealed tests, of "
         f"which {int(gain['fell'].sum())} did. The verdict: **{verdict['decision']}** ({verdict['word']}).",
-        "\n".join(f"- {line}" for line in _causes(decision)) or "- no cause is named",
+        "\n".join(f"- {line}" for line in causes_in_words(decision, TITLES)) or "- no cause is named",
         "Beside it the tool says:", "\n".join(f"- {line}." for line in verdict["caveats"]),
         _scores(gain, "sealed"), _scores(evidence, "open"), _gains(verdict),
         f"![tests that the rock survived, and the predicted chance of a fall]({rock.lower()}-survival.png)",
@@ -85,17 +86,6 @@ def part(rock, folder, output, store):
         _other_solver(campaign, store),
     ]  # fmt: skip
     return "\n\n".join(lines)
-
-
-def _causes(decision):
-    for one in decision.parts:
-        for cause in one.causes:
-            sizes = ", ".join(
-                f"{name} {size.estimate:.3g} ({size.lower:.3g} to {size.upper:.3g}) {size.unit}"
-                for name, size in cause.parameters.items()
-            )
-            odds = "" if cause is one.causes[0] else f"; less likely by {np.exp(cause.odds):.2g} times"
-            yield f"{title_of(cause.name)}: {sizes}; gain {cause.gain:.1f} nats{odds}"
 
 
 def _scores(scores, which):
