@@ -13,6 +13,7 @@ import numba
 import numpy as np
 from force_evaluation import assembled_stack
 from measuring import process_seconds, spread
+from numba.core.caching import NullCache
 
 from blockshake.jit import kernel
 from blockshake.solvers.ls_dem.contact.contact_forces import contact_forces_into
@@ -37,6 +38,7 @@ def count_operations():
         of the widest and ``gathers``: whether the loop looks up a grid.
     """
     compiled = kernel(contact_forces_into)
+    compiled._cache = NullCache()  # Numba shows no machine code of a kernel that it loaded
     compiled(*assembled_stack(LsDemParameters()))
     return [loop for loop in map(operations, _innermost_loops(compiled)) if loop is not None]
 

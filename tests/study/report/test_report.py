@@ -101,7 +101,7 @@ def test_samples_that_did_not_complete_are_listed_with_their_reason(text):
     assert "NSCD rigid 6 1 1 5 until 1.02 s, then 4 5 4 4 5" in text
     assert "configuration-1: samples that did not complete" not in text
     assert (
-        "How samples end that failed for a numerical reason: NSCD rigid, configuration-4 (1 of 6). No statistic"
+        "How samples end that failed for a numerical reason: configuration-4 by NSCD rigid (1 of 6). No statistic"
         in text
     )
 
