@@ -22,7 +22,7 @@ _REASON = re.compile(r"^Ended with exit code (\d+): (.*)$", re.MULTILINE)
 _JOB_FAILED = "job_error"  # Snakemake's event
 _GRACE = 10.0  # s; for running jobs to keep their checkpoints
 _SHOWN = 5  # failed jobs in the last lines
-_UNKNOWN = "the job ended without a word, as one that is killed does"
+_UNKNOWN = "the job ended without a word, as one does that is killed or whose modules cannot be imported"
 
 
 class Cost(NamedTuple):

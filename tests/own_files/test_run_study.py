@@ -99,9 +99,27 @@ def test_progress_is_told_by_case_with_the_time_left(folder, workflow, capsys):
     assert len(told) == 3
 
 
+def test_a_command_that_goes_on_counts_what_is_there(folder, workflow, capsys):
+    runs = folder / "results" / "mine" / "runs" / "ls-dem" / "weak"
+    runs.mkdir(parents=True)
+    for batch in ("000-004", "005-007"):
+        (runs / f"{batch}.nc").touch()
+    workflow[1].extend([*(sample("weak", "ls-dem", number, 2.0) for number in (8, 9))])
+    assert main(["study", "study.yaml", "--cores", "1"]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said[1] == "8 of them are there from before, and run again only where their input changed"
+    assert any(line.startswith("weak, LS-DEM: 10 of 10 samples; 10 of 40 runs; ") for line in said)
+
+
+def test_a_command_without_anything_to_do_says_so(folder, workflow, capsys):
+    workflow[1].append("Nothing to be done (all requested files are present and up to date).")
+    assert main(["study", "study.yaml"]) == 0
+    assert capsys.readouterr().out.splitlines()[-1].startswith("mine: nothing was due; reports/mine.html, ")
+
+
 def test_a_twin_counts_no_sample_twice(folder):
     heard = []
-    progress = of_study._Progress(load_config("study.yaml"), 1, None, heard.append)
+    progress = of_study._Progress(load_config("study.yaml"), 1, None, folder, heard.append)
     for _ in range(2):
         progress(sample("weak", "ls-dem", 0, 1.0))
     assert len(progress.done["weak", "ls-dem"]) == 1
@@ -111,7 +129,7 @@ def test_a_model_with_a_name_of_its_own_is_told_by_it(folder):
     study = STUDY | {"models": STUDY["models"] | {"ls-dem-as-printed": {"time_step": 5e-5}}}
     (folder / "study.yaml").write_text(yaml.safe_dump(study))
     heard = []
-    progress = of_study._Progress(load_config("study.yaml"), 1, None, heard.append)
+    progress = of_study._Progress(load_config("study.yaml"), 1, None, folder, heard.append)
     for number in range(10):
         progress(sample("weak", "ls-dem-as-printed", number, 1.0))
     assert heard[-1].startswith("weak, LS-DEM as printed: 10 of 10 samples; 10 of 60 runs; ")

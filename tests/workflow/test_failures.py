@@ -82,7 +82,7 @@ def test_a_job_that_is_killed_ends_a_study_too(tmp_path):
     drawing_fails(checkout, "import os\nos.kill(os.getpid(), 9)")
     answer = checkout.snakemake("results/small/design.csv")
     assert answer.returncode == 1
-    assert "the job ended without a word, as one that is killed does" in last_lines(answer, 3)[0]
+    assert "the job ended without a word, as one does that is killed" in last_lines(answer, 3)[0]
 
 
 @pytest.mark.parametrize("engine", [(), ("--keep-going",)])

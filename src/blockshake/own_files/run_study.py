@@ -18,6 +18,7 @@ from blockshake.working_folder import hold
 
 _SAMPLE = re.compile(r"^(\S+) (\S+) sample (\d+), (?:kept|simulated): .*?(?:; took ([\d.e+]+) s)?$")
 _STEPS = re.compile(r"^(\d+) of (\d+) steps \((\d+)%\) done$")
+_IDLE = "Nothing to be done"
 _END = re.compile(r"^(Not finished\.|blockshake: )")
 _PERIOD = 5.0  # s, at least, between two lines of progress
 _LAST = 15  # lines of a workflow that ends without a word of its own
@@ -67,8 +68,10 @@ def run_study(file, output=None, cores=None, case=None, say=print):
         moved = yaml.safe_dump(_seen_from(folder, load_yaml(file)), sort_keys=False, allow_unicode=True)
         write_text(path, moved)
     report = folder / "reports" / "-".join(filter(None, (config.name, case)))
-    heard = _Progress(config, cores, case, say)
+    heard = _Progress(config, cores, case, folder, say)
     say(f"{config.name}: {heard.total} runs of {', '.join(config.models)}, on {cores} cores, in {folder}")
+    if kept := heard.total - heard.runs_left():
+        say(f"{kept} of them are there from before, and run again only where their input changed")
     if not any((folder / "results" / "kernels").glob("*")):
         say("models that are new to this machine are compiled first: half a minute to one minute each")
     target = [f"reports/{report.name}.html"] if case else ["all"]
@@ -84,7 +87,8 @@ def run_study(file, output=None, cores=None, case=None, say=print):
         raise stopped from None
     shown = [report.with_suffix(".html"), report.with_suffix(".pdf"), folder / "results" / config.name]
     shown = [Path(os.path.relpath(one)) for one in shown]
-    say(f"{config.name}: done in {_minutes(time.monotonic() - begin)}; {shown[0]}, {shown[1]}, {shown[2]}/")
+    done = "nothing was due" if heard.idle else f"done in {_minutes(time.monotonic() - begin)}"
+    say(f"{config.name}: {done}; {shown[0]}, {shown[1]}, {shown[2]}/")
     return shown
 
 
@@ -112,23 +116,29 @@ class _Progress:
     """Hears a workflow, and says how far every case is and how long the rest takes.
 
     The time left is that of the samples that are not done, by the mean cost of the samples of the same case and model,
-    else of the model per second simulated. Where a model has no sample yet, the rest takes longer than is said.
+    else of the model per second simulated. Where a model has no sample yet, the rest takes longer than is said. Samples
+    whose batch a command before has finished are done.
     """
 
-    def __init__(self, config, cores, only, say):
+    def __init__(self, config, cores, only, folder, say):
         self.cores, self.say, self.said = cores, say, time.monotonic()
         cases = [case for case in config.cases if only in (None, case.name)]
         self.durations = {case.name: case.duration for case in cases}
         self.wanted = {
             (case.name, model): config.samples(model, case.name) for case in cases for model in config.models
         }
-        self.done = {pair: set() for pair in self.wanted}
+        runs = folder / "results" / config.name / "runs"
+        self.done = {
+            (case, model): _finished(runs / model / case) & set(range(wanted))
+            for (case, model), wanted in self.wanted.items()
+        }
         self.costs = {pair: [] for pair in self.wanted}
-        self.total, self.ending, self.last = sum(self.wanted.values()), False, []
+        self.total, self.ending, self.idle, self.last = sum(self.wanted.values()), False, False, []
 
     def __call__(self, line):
         self.last = [*self.last[1 - _LAST :], line]
         self.ending = self.ending or bool(_END.match(line))
+        self.idle = self.idle or line.startswith(_IDLE)
         if self.ending:
             sys.stderr.write(f"{line}\n")
         if found := _SAMPLE.match(line):
@@ -137,19 +147,19 @@ class _Progress:
                 self.done[pair].add(int(found[3]))
                 self.costs[pair] += [float(found[4])] if found[4] else []
                 self._tell(pair)
-        elif (found := _STEPS.match(line)) and self._is_due() and not self._runs_left():
+        elif (found := _STEPS.match(line)) and self._is_due() and not self.runs_left():
             self._say(f"all runs are done; {found[1]} of {found[2]} jobs")
 
     def _is_due(self):
         return time.monotonic() - self.said > _PERIOD
 
-    def _runs_left(self):
+    def runs_left(self):
         return self.total - sum(map(len, self.done.values()))
 
     def _tell(self, pair):
         count, wanted = len(self.done[pair]), self.wanted[pair]
         if count == wanted or self._is_due():
-            share = f"{self.total - self._runs_left()} of {self.total} runs"
+            share = f"{self.total - self.runs_left()} of {self.total} runs"
             label = model_label(pair[1])
             self._say(f"{pair[0]}, {label}: {count} of {wanted} samples; {share}; {self._left()}")
 
@@ -174,6 +184,12 @@ class _Progress:
             unknown = unknown or not rates
             seconds += left * sum(rates) / max(len(rates), 1)
         return f"{'more than' if unknown else 'about'} {_minutes(seconds / self.cores)} left"
+
+
+def _finished(folder):
+    """Samples of the batches in a folder, whose names are such as ``010-019.nc``."""
+    batches = (path.stem.split("-") for path in folder.glob("*-*.nc"))
+    return {sample for first, last in batches for sample in range(int(first), int(last) + 1)}
 
 
 def _minutes(seconds):
