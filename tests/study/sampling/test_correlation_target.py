@@ -33,11 +33,12 @@ def test_a_square_csv_is_read_by_its_names(tmp_path):
         (",a,b\nb,1,0\na,0,1\n", "first column"),
         (",a,a\na,1,0\na,0,1\n", "every name once"),
         (",a,b\na,1,x\nb,0,1\n", "a, b: expected a number, not 'x'"),
+        (",a,b\na,1,0_1\nb,0_1,1\n", "a, b: expected a number, not '0_1'"),
         (",a,b\na,1\nb,0,1\n", "expected 2 numbers"),
         (",a,b\na,1,0.2\nb,0.3,1\n", "symmetric"),
         (",a,b\na,0.9,0.2\nb,0.2,1\n", "expected 1 on the diagonal, not 0.9"),
         (",a,b\na,1,1.2\nb,1.2,1\n", "in [-1, 1], not 1.2"),
-        (",a,b\na,1,nan\nb,nan,1\n", "in [-1, 1]"),
+        (",a,b\na,1,nan\nb,nan,1\n", "a, b: expected a number, not 'nan'"),
         (",a,b\na,1,1\nb,1,1\n", "positive definite"),
     ],
 )

@@ -160,9 +160,10 @@ class Decision(Strict):
     @property
     def causes(self):
         """Effects of the registry that are not excluded, the likeliest `Cause` of each name."""
-        return tuple({one.name: one for part in self.parts[::-1] for one in part.effects[::-1]}.values())[
-            ::-1
-        ]
+        likeliest = {}
+        for one in (one for part in self.parts for one in part.effects):
+            likeliest.setdefault(one.name, one)
+        return tuple(likeliest.values())
 
     @property
     def forms(self):

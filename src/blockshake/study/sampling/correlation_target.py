@@ -8,6 +8,7 @@ import pandas as pd
 
 from blockshake.errors import InputError
 from blockshake.files import read_text
+from blockshake.tables.numbers import plain_number
 
 _ROUNDING = 1e-6  # of entries typed with six digits
 _SMALLEST_EIGENVALUE = 1e-6  # below it Cholesky's factor is noise
@@ -52,12 +53,9 @@ def load_correlation(path):
         if len(row) != len(names) + 1:
             raise InputError(path, names[i], f"expected {len(names)} numbers in its row, not {len(row) - 1}")
         for j, cell in enumerate(row[1:]):
-            try:
-                values[i, j] = float(cell)
-            except ValueError:
-                raise InputError(
-                    path, f"{names[i]}, {names[j]}", f"expected a number, not '{cell}'"
-                ) from None
+            if (number := plain_number(cell)) is None:
+                raise InputError(path, f"{names[i]}, {names[j]}", f"expected a number, not '{cell}'")
+            values[i, j] = float(number)
     check_correlation(values, names, path)
     frame = pd.DataFrame(values, index=names, columns=names)
     frame.attrs["source"] = str(path)
