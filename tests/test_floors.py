@@ -45,7 +45,6 @@ ROOMS_OF_STUDY = [
     ["config_checks"],
     ["analyses"],
     ["config"],
-    ["statements"],
     ["report"],
 ]
 MOST_MODULES = 15
@@ -55,7 +54,7 @@ MOST_LINES = {
     "measurement": 4200, "simulation": 1800, "parity": 2265, "forces": 2160, "effects": 990, "pages": 1395,
     "study": 950, "study/sampling": 1050, "study/ensembles": 1495, "study/stiffness": 590,
     "study/comparison": 645, "study/fragility": 525, "study/sensitivity": 870, "study/calibration": 1085,
-    "study/statements": 1085, "study/report": 1955, "views": 750, "diagnosis": 340,
+    "study/report": 1955, "views": 750, "diagnosis": 340,
     "diagnosis/evidence": 1110, "diagnosis/outside": 675, "diagnosis/answer": 1570,
     "diagnosis/nominal": 810, "diagnosis/misfit": 430, "diagnosis/verdict": 655, "diagnosis/gain": 1525,
     "diagnosis/report": 1025, "virtual": 485, "own_files": 1145, "cost": 310, "diagnosis/flight": 1190,

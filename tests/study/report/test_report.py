@@ -1,4 +1,3 @@
-import json
 import re
 import shutil
 from dataclasses import replace
@@ -11,7 +10,7 @@ from fake_study import COLLAPSE_REASON, CPU_TIME, MODELS
 from page import CLAIMS, Page, texts
 
 from blockshake.errors import InputError
-from blockshake.files import HOME, load_json
+from blockshake.files import HOME
 from blockshake.pages.blocks import Table
 from blockshake.pages.wording import number
 from blockshake.pages.writing import write_html, write_pdf
@@ -22,7 +21,6 @@ from blockshake.study.report.content import load_content
 from blockshake.study.report.opening_sections import failures
 from blockshake.study.report.report import compose, make_case_report, make_report
 from blockshake.study.report.result_sections import responses
-from blockshake.study.statements.section import findings
 
 
 def test_tags_close_and_ids_are_unique(page):
@@ -162,13 +160,6 @@ def test_same_results_same_bytes(document, report, tmp_path):
         assert first.read_bytes() == second.read_bytes()
 
 
-def test_findings_on_the_paper_are_left_as_values(fake, report):
-    left = load_json(report[2])
-    assert left == json.loads(json.dumps(findings(load_content(fake.study, fake.results, fake.logs))))
-    assert left["study"] == "fake"
-    assert "basso-tirreno at 2" in left["cases"][0]
-
-
 def test_complete_study_lists_no_sample(fake):
     study = {**fake.study, "cases": fake.study["cases"][:1]}
     assert [block.kind for block in failures(load_content(study, fake.results, fake.logs))] == ["text"]
@@ -188,8 +179,7 @@ def test_own_structures_by_rigid_models_need_no_contact_stiffness(copied, monkey
         shutil.rmtree(copied.results / name)
     study = {**copied.study, "models": {"nscd-rigid": MODELS["nscd-rigid"]}}
     found = load_content(study, copied.results, copied.logs)
-    assert not {"stiffness", "statements"} & {section.key for section in compose(found).sections}
-    assert findings(found)["findings"] == {}
+    assert "stiffness" not in {section.key for section in compose(found).sections}
 
 
 def test_case_alone_needs_and_tells_nothing_of_the_others(copied, tmp_path):
@@ -207,7 +197,6 @@ def test_case_alone_needs_and_tells_nothing_of_the_others(copied, tmp_path):
     assert "1 case, 4 models" in said
     assert "blockshake study FILE --case configuration-4" in said
     assert {"answer", "figures", "structures", "responses", "models", "limits", "origin"} <= set(parsed.ids)
-    assert not {"statements"} & set(parsed.ids)
     before = said[: said.index("Configuration used")]
     assert "configuration-1" not in before
 
@@ -216,7 +205,7 @@ def test_missing_results_are_named(copied, tmp_path):
     fake = copied
     missing = fake.results / "envelopes" / "ls-dem" / "configuration-1.nc"
     missing.unlink()
-    made = [tmp_path / f"a.{kind}" for kind in ("html", "pdf", "json")]
+    made = [tmp_path / f"a.{kind}" for kind in ("html", "pdf")]
     with pytest.raises(InputError, match=r"envelopes/ls-dem/configuration-1\.nc"):
         make_report(fake.study, fake.results, fake.logs, *made)
     assert not (tmp_path / "a.html").exists()
