@@ -7,7 +7,7 @@ import xarray as xr
 from blockshake.geometry.structure import load_structure
 from blockshake.pages.rows import bodies_by_height, face_markers
 from blockshake.study.report.content import load_content
-from blockshake.study.sensitivity.figure import plot_sensitivity, plot_sensitivity_over_time
+from blockshake.study.sensitivity.figure import plot_sensitivity
 from blockshake.study.sensitivity.findings import sentence, shared_words
 from blockshake.study.sensitivity.section import sensitivities, summary_table
 from blockshake.study.sensitivity.sensitivity import QUANTITIES
@@ -24,8 +24,6 @@ def made_up(share=0.6, correlation=-0.7, spread=0.01, level=0.3, shared=0.01):
     first[..., 0], rank[..., 0] = share, correlation
     rank[0] = np.nan
     levels = np.full(len(QUANTITIES), level)
-    windows = np.zeros((3, 2, 2))
-    windows[0, :, 0] = share
     result = xr.Dataset(
         {
             "first_order": (pairs, first),
@@ -39,13 +37,10 @@ def made_up(share=0.6, correlation=-0.7, spread=0.01, level=0.3, shared=0.01):
             "used": ("quantity", np.full(len(QUANTITIES), 50)),
             "correlation": (("parameter", "other"), [[1.0, shared], [shared, 1.0]]),
             "control": ("parameter", [0, 1]),
-            "window_first_order": (("window", "marker", "parameter"), windows),
-            "window_spread": (("window", "marker"), np.full((3, 2), spread)),
-            "window_first_order_chance": ((), level),
         },
         coords={
             "quantity": list(QUANTITIES), "marker": ["low-face", "high-face"], "parameter": [FRICTION, VISCOUS],
-            "bound": ["lower", "upper"], "window": [0.5, 1.5, 2.5],
+            "bound": ["lower", "upper"],
         },
     )  # fmt: skip
     return result
@@ -91,21 +86,6 @@ def test_figure_shows_every_variable_with_interval_and_level():
     assert axes.get_yticklabels()[0].get_text() == "friction, concrete on concrete"
     quiet = {"nscd-rigid": made_up(spread=1e-6)}
     assert plot_sensitivity(quiet, {"low": "low-face"}, NOISE, "first_order") is None
-
-
-def test_curves_over_time_are_the_files_and_stop_below_the_noise():
-    result = made_up()
-    result["window_spread"][2] = 1e-5
-    below = plot_sensitivity_over_time({"ls-dem": result}, "high-face", NOISE).axes[1]
-    curve = next(line for line in below.lines if line.get_label().startswith("friction"))
-    np.testing.assert_array_equal(curve.get_ydata(), [0.6, 0.0, np.nan])
-    assert not [line for line in below.lines if "viscous" in line.get_label()]
-
-
-def test_too_few_samples_are_not_called_close_to_each_other():
-    result = made_up(spread=np.nan)
-    below = plot_sensitivity_over_time({"nscd-rigid": result}, "high-face", NOISE).axes[1]
-    assert [text.get_text() for text in below.texts] == ["too few samples"]
 
 
 @pytest.mark.parametrize(

@@ -3,12 +3,7 @@
 from blockshake.pages.blocks import Figure, Heading, Items, Section, Table, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.wording import MISSING, model_label, number
-from blockshake.study.sensitivity.figure import (
-    SHOWN,
-    is_shown,
-    plot_sensitivity,
-    plot_sensitivity_over_time,
-)
+from blockshake.study.sensitivity.figure import SHOWN, is_shown, plot_sensitivity
 from blockshake.study.sensitivity.findings import (
     differs,
     influence_words,
@@ -77,8 +72,6 @@ def _case(case):
         for measure in SHOWN
         if any(is_shown(one, chosen.values(), measure, case.marker_noise) for one in results.values())
     ]
-    if not shown:
-        return blocks
     return [
         *blocks,
         *(
@@ -91,12 +84,6 @@ def _case(case):
                 svg_of(plot_sensitivity, results, chosen, case.marker_noise, measure),
             )
             for measure in shown
-        ),
-        Figure(
-            f"{case.name}, {top}: standard deviation over the samples in every second (dashed: noise of a marker), and "
-            "the share of it that each variable of use explains by itself; grey: level of chance over all seconds, "
-            "blocks and variables.",
-            svg_of(plot_sensitivity_over_time, results, chosen[top], case.marker_noise),
         ),
     ]
 
