@@ -193,7 +193,6 @@ def test_nothing_more_is_needed():
     config = check_config(copy.deepcopy(NEEDED), "mine.yaml")
     assert config.cases[0].measured is None
     assert config.calibration is None
-    assert config.ladder.motions == ()
 
 
 @pytest.mark.parametrize("key", NEEDED)

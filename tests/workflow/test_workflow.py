@@ -153,7 +153,7 @@ def test_killed_study_loses_no_finished_sample(tmp_path):
     assert {name: (store / name).stat().st_mtime_ns for name in finished} == finished
 
 
-@pytest.mark.parametrize("target", ["ladder", "diagnose"])
+@pytest.mark.parametrize("target", ["configuration-1", "diagnose"])
 def test_a_second_command_is_refused_and_touches_nothing(target, tmp_path):
     checkout = Checkout(tmp_path)
     campaign = ["--config", "campaign=data/virtual-campaign/configuration-1"] * (target == "diagnose")
@@ -209,7 +209,6 @@ def test_study_without_measured_tests_compares_with_none(tmp_path):
     planned = checkout.jobs()
     assert "make_envelope" in planned
     assert not {"compare_with_measurement", "compare_open_tests"} & set(planned)
-    assert "climb_ladder" in checkout.jobs("ladder")
 
 
 @pytest.mark.parametrize("study", ["study", "quick", "paper"])

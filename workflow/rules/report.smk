@@ -2,9 +2,6 @@ rule make_report:
     """The study as one self-contained page and as a PDF, from the same content."""
     input:
         unpack(lambda wildcards: files_of_report()),
-        ladder_motions=expand(
-            "results/{study}/motions/{motion}.nc", study=STUDY, motion=MOTIONS
-        ),
     output:
         html=report("reports/{study}.html", category="Study"),
         pdf=report("reports/{study}.pdf", category="Study"),
