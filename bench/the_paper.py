@@ -193,8 +193,8 @@ def heavier_blocks(content):
         _, moduli = _of_the_tower(content, calibrated, "youngs_modulus")
         _, density = _of_the_tower(content, calibrated, "density")
         ratio = calibrated.stiffness["ls_dem.normal_stiffness"].to_numpy() / moduli
-        found = spearmanr(ratio, density)
-        rises.append(_spread(ratio) >= ONE_NUMBER and found.statistic > 0.0 and found.pvalue <= _SHOWN)
+        found = spearmanr(ratio, density) if _spread(ratio) >= ONE_NUMBER else None  # else one number
+        rises.append(found is not None and found.statistic > 0.0 and found.pvalue <= _SHOWN)
         words.append(
             f"k_n / E differs by {number(100.0 * _spread(ratio), 2)} % at most over densities from "
             f"{number(density.min(), 4)} to {number(density.max(), 4)} kg/m3"

@@ -90,7 +90,7 @@ def test_two_jobs_fail(tmp_path, engine):
     checkout = Checkout(tmp_path)
     drawing_fails(checkout, BOTH + IMPORT + REFUSED.format("design"))
     describe_fails(checkout, BOTH + IMPORT + REFUSED.format("motion"))
-    answer = checkout.snakemake("results/small/design.csv", "results/small/motions/alkion.nc", *engine)
+    answer = checkout.snakemake("results/small/design.csv", "results/small/motions/basso-tirreno.nc", *engine)
     assert answer.returncode == 2
     ends = answer.stderr[answer.stderr.rindex(NOT_FINISHED) :].splitlines()
     assert ends[-1].startswith("  log: logs/small/")
@@ -104,7 +104,7 @@ def test_jobs_that_need_no_failed_one_go_on_where_that_is_asked_for(tmp_path):
     checkout = Checkout(tmp_path)
     describe_fails(checkout, IMPORT + REFUSED.format("motion"))
     answer = checkout.snakemake(
-        "results/small/motions/alkion.nc", "results/small/design.csv", "--keep-going", "--cores", "1"
+        "results/small/motions/basso-tirreno.nc", "results/small/design.csv", "--keep-going", "--cores", "1"
     )
     assert answer.returncode == 2
     assert (tmp_path / "results" / "small" / "design.csv").exists()
@@ -117,7 +117,7 @@ def test_a_failure_ends_a_simulation_that_runs(tmp_path):
     )
     describe_fails(checkout, wait + IMPORT + REFUSED.format("motion"))
     checkout.append("study/ensembles/batch.py", LONG)
-    answer = checkout.snakemake(RUNS, "results/small/motions/alkion.nc")
+    answer = checkout.snakemake(RUNS, "results/small/motions/basso-tirreno.nc")
     assert (tmp_path / "simulates").exists()
     assert answer.returncode == 2
     assert last_lines(answer, 3)[0] == "blockshake: motion.csv: key: expected another motion"
