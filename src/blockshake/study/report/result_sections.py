@@ -16,7 +16,7 @@ from blockshake.pages.wording import (
 )
 from blockshake.study.comparison.tables import block_tables
 from blockshake.study.ensembles.displacement_figure import interactive_displacements, plot_displacements
-from blockshake.study.report.joint_blocks import joint_blocks
+from blockshake.study.report.joints_table import joints_table
 from blockshake.study.report.moving import moving_samples, plot_still, usual_magnification
 from blockshake.study.sensitivity.findings import quiet_markers
 
@@ -61,7 +61,7 @@ def _response(case, motion):
         figure("slab", f"{case.name}: displacement relative to the slab's marker, {every}."),
         *_moving(case),
         *block_tables(case),
-        *joint_blocks(case),
+        *joints_table(case),
         *([] if case.measured is None else [figure("inertial", beside), coverage_table(case)]),
     ]
 
