@@ -46,7 +46,7 @@ class Share(Strict):
 
 
 class TrackRecord(Strict):
-    """What a report tells of a track record; its file has more, for the page of the figures."""
+    """The part of a track record that a report tells; its file has more, for the page of the figures."""
 
     model_config = ConfigDict(extra="ignore")
 
