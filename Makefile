@@ -41,7 +41,7 @@ examples: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python examples/own_campaign.py results/examples/own-campaign
 
 test: setup
-	$(BIN)/pytest -m "not slow and not hidden_effects and not faults and not cluster" --numprocesses $(CORES) --dist loadfile
+	$(BIN)/pytest -m "not slow and not hidden_effects and not faults and not cluster" --numprocesses $(CORES) --dist loadfile --no-loadscope-reorder
 
 test-slow: setup
 	$(BIN)/pytest -m slow

@@ -18,6 +18,8 @@ COMPILED = (("ls-dem",), ("nscd-rigid", "nscd-elastic", "nscd-viscoelastic"))
 COMPILE = (
     "import sys, blockshake.simulation.simulate as s; [s.compile_kernels(model) for model in sys.argv[1:]]"
 )
+# files that take a minute: a parallel run begins with them, so that no worker is left with one at the end
+LONG = ("test_workflow.py", "test_make_case.py", "test_published_records.py", "test_failures.py", "test_flights.py")
 SHAPES = {
     "slab": {"box": [3.0, 3.0, 0.2]},
     "block": {"box": [0.8, 2.4, 1.6], "chamfer": 0.02},
@@ -32,6 +34,12 @@ def pytest_sessionstart(session):
     if getattr(session.config.option, "numprocesses", None) and not hasattr(session.config, "workerinput"):
         processes = [subprocess.Popen([sys.executable, "-c", COMPILE, *models]) for models in COMPILED]
         assert [process.wait() for process in processes] == [0, 0]
+
+
+def pytest_collection_modifyitems(items):
+    """Let the files of `LONG` come first, in their order."""
+    place = {name: number for number, name in enumerate(LONG)}
+    items.sort(key=lambda item: place.get(item.path.name, len(LONG)))
 
 
 @pytest.fixture(scope="session")
