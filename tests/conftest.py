@@ -19,7 +19,13 @@ COMPILE = (
     "import sys, blockshake.simulation.simulate as s; [s.compile_kernels(model) for model in sys.argv[1:]]"
 )
 # files that take a minute: a parallel run begins with them, so that no worker is left with one at the end
-LONG = ("test_workflow.py", "test_make_case.py", "test_published_records.py", "test_failures.py", "test_flights.py")
+LONG = (
+    "test_workflow.py",
+    "test_make_case.py",
+    "test_published_records.py",
+    "test_failures.py",
+    "test_flights.py",
+)
 SHAPES = {
     "slab": {"box": [3.0, 3.0, 0.2]},
     "block": {"box": [0.8, 2.4, 1.6], "chamfer": 0.02},

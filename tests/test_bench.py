@@ -120,6 +120,7 @@ def test_the_contact_kernel_is_vectorised(result):
     assert 0.0 < result["arithmetic"]["share_of_peak"] < 1.0
 
 
+@pytest.mark.slow
 def test_the_contact_kernel_has_no_more_operations_than_were_accepted(result):
     """Counted in its machine code, not timed: `make bench ARGUMENTS=--accept` accepts others."""
     import accepted
