@@ -14,7 +14,7 @@ from blockshake.dynamics.motion import ground_motion
 sys.path.insert(0, str(Path(__file__).parent))
 from made_records import write_at2
 
-COUNT = 20
+COUNT = 40
 
 
 def straightened(acceleration, step):
