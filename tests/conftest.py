@@ -1,7 +1,11 @@
 import copy
+import os
 import signal
 import subprocess
 import sys
+
+# before NumPy is loaded: threads of linear algebra beyond the cores wait for each other most of the time
+os.environ |= dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 import numpy as np
 import pytest
