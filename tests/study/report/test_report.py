@@ -7,11 +7,12 @@ import pytest
 import xarray as xr
 from fake_inputs import PEAK_ACCELERATION
 from fake_study import COLLAPSE_REASON, CPU_TIME, MODELS
-from page import CLAIMS, Page, texts
+from page import CLAIMS, Page
 
 from blockshake.errors import InputError
 from blockshake.files import HOME
 from blockshake.pages.blocks import Table
+from blockshake.pages.rows import face_markers
 from blockshake.pages.wording import number
 from blockshake.pages.writing import write_html, write_pdf
 from blockshake.study import analyses
@@ -20,7 +21,7 @@ from blockshake.study.report import content
 from blockshake.study.report.content import load_content
 from blockshake.study.report.opening_sections import failures
 from blockshake.study.report.report import compose, make_case_report, make_report
-from blockshake.study.report.result_sections import responses
+from blockshake.study.report.result_sections import band_remarks, early_end
 
 
 def test_tags_close_and_ids_are_unique(page):
@@ -243,23 +244,23 @@ def test_a_study_without_a_calibration_has_no_such_section(fake):
 
 
 def test_bands_that_are_lines_are_counted(fake):
-    content = load_content(fake.study, fake.results, fake.logs)
-    assert not [one for one in texts(responses(content)) if "close to lines" in one]
-    spread = content.cases["configuration-1"].responses["nscd-rigid"].sensitivity["spread"]
+    case = load_content(fake.study, fake.results, fake.logs).cases["configuration-1"]
+    markers = face_markers(case.structure).values()
+    assert not band_remarks(case, markers)
+    spread = case.responses["nscd-rigid"].sensitivity["spread"]
     spread.loc[{"quantity": "history", "marker": "block-1-face"}] = 1e-6
-    (said,) = [one for one in texts(responses(content)) if "close to lines" in one]
+    (said,) = [block.text for block in band_remarks(case, markers)]
     assert said.startswith("NSCD rigid: the samples of 1 of 3 blocks differ by less")
+    assert "close to lines" in said
 
 
 def test_a_window_that_ends_with_the_motion_has_no_remark(fake):
     content = load_content(fake.study, fake.results, fake.logs)
-    remarks = [
-        one for one in texts(responses(content)) if one.startswith("The window ends before the motion")
-    ]
-    assert len(remarks) == len(content.cases)
-    for motion in content.motions.values():
-        motion.attrs["duration"] = 2.0
-    assert not [one for one in texts(responses(content)) if one.startswith("The window ends")]
+    case, (motion,) = content.cases["configuration-1"], content.motions.values()
+    (remark,) = early_end(case, motion)
+    assert remark.text.startswith("The window ends before the motion")
+    motion.attrs["duration"] = 2.0
+    assert early_end(case, motion) == []
 
 
 def test_study_without_measured_tests_tells_of_its_samples_alone(fake):

@@ -73,11 +73,6 @@ def compose(content):
                 for name in ("project", "author", "date")
                 if content.study.get(name)
             ),
-            sections=tuple(
-                made
-                for section in _SECTIONS
-                # the changes by a cause are those of a pair of cases
-                if not (content.only and section is extension) and (made := section(content)) is not None
-            ),
+            sections=tuple(made for section in _SECTIONS if (made := section(content)) is not None),
         )
     )

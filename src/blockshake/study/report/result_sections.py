@@ -56,8 +56,8 @@ def _response(case, motion):
             f"{case.motion}, scale {given(case.settings['scale'])}, first {given(case.settings['duration'])} s."
             + _noise(case)
         ),
-        *_early_end(case, motion),
-        *_lines(case, markers.values()),
+        *early_end(case, motion),
+        *band_remarks(case, markers.values()),
         figure("slab", f"{case.name}: displacement relative to the slab's marker, {every}."),
         *_moving(case),
         *block_tables(case),
@@ -93,7 +93,7 @@ def _noise(case):
     return f" Marker noise of the {word}: {given(1e3 * case.marker_noise)} mm (standard deviation)."
 
 
-def _early_end(case, motion):
+def early_end(case, motion):
     """A remark where the window ends within the motion."""
     if case.settings["duration"] >= motion.attrs["duration"]:
         return []
@@ -106,7 +106,7 @@ def _early_end(case, motion):
     ]
 
 
-def _lines(case, markers):
+def band_remarks(case, markers):
     """A remark on each model whose samples are nearly one and the same run, or one only."""
     texts = []
     for model, one in case.responses.items():
