@@ -1,13 +1,11 @@
 import numpy as np
 import pytest
-from fake_findings import ECCENTRIC, OPEN, SEALED, departures, misfit, responses
+from fake_findings import OPEN, SEALED, departures, misfit, responses
 
-from blockshake.diagnosis.answer.decision import Cause
 from blockshake.diagnosis.gain.section import plot_drift
 from blockshake.diagnosis.misfit.figure import plot_misfit
 from blockshake.diagnosis.report.answer_section import plot_forces, plot_slab, shown_bodies, shown_tests
 from blockshake.diagnosis.report.odds_section import plot_odds
-from blockshake.diagnosis.report.size_section import plot_sizes
 
 BODIES = ("block-1", "block-2", "block-3")
 
@@ -79,15 +77,6 @@ def test_odds_are_shaded_within_twenty_times_and_end_in_arrows_beyond_the_axis()
     ticks = gains.get_xticks()
     assert 0 in ticks
     assert max(ticks) <= 1.3 * 300.0
-
-
-def test_a_size_stands_on_its_range_with_its_members():
-    cause = Cause.model_validate(ECCENTRIC)
-    (axes,) = plot_sizes([cause]).axes
-    members, size = (line for line in axes.get_lines() if line.get_marker() in ("|", "o"))
-    np.testing.assert_allclose(members.get_xdata(), [1e3 * one["offset"] for one in cause.members])
-    assert size.get_xdata()[0] == 50.0
-    assert axes.get_xlabel() == "offset [mm], eccentric mass of a block"
 
 
 def test_drift_with_and_without_the_cause_ends_where_it_can_be_predicted():
