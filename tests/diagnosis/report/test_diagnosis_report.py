@@ -240,3 +240,10 @@ def test_missing_results_are_named_and_nothing_is_written(tmp_path, name):
     with pytest.raises(InputError, match=name.replace(".", r"\.")):
         make_diagnosis_report(*fake.arguments(), tmp_path / "a.html", tmp_path / "a.pdf")
     assert not (tmp_path / "a.html").exists()
+
+
+def test_odds_are_a_row_a_cause_the_likeliest_first(documents):
+    (table,) = blocks_of(documents["named"], "table", "odds")
+    assert table.rows[0][2] == "the likeliest"
+    assert "nothing" in [row[0] for row in table.rows]
+    assert {row[1] for row in table.rows} <= {"", "effect", "form from outside"}

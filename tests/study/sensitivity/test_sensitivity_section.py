@@ -9,7 +9,7 @@ from blockshake.pages.rows import bodies_by_height, face_markers
 from blockshake.study.report.content import load_content
 from blockshake.study.sensitivity.figure import plot_sensitivity
 from blockshake.study.sensitivity.findings import sentence, shared_words
-from blockshake.study.sensitivity.section import sensitivities, summary_table
+from blockshake.study.sensitivity.section import sensitivities
 from blockshake.study.sensitivity.sensitivity import QUANTITIES
 
 NOISE = 1e-4  # m
@@ -119,15 +119,3 @@ def test_columns_are_one_body_of_each_height_from_the_lowest():
     bodies = bodies_by_height(structure, face_markers(structure))
     assert bodies == ["wall-a-1", "wall-a-2", "wall-a-3", "wall-a-4", "top"]
     assert bodies_by_height(structure, face_markers(structure), most=3) == ["wall-a-1", "wall-a-3", "top"]
-
-
-def test_summary_has_the_lowest_and_the_highest_block_of_every_case_and_model(fake):
-    content = load_content(fake.study, fake.results, fake.logs)
-    table = summary_table(content)
-    assert [row[:3] for row in table.rows[:2]] == [
-        ("configuration-1", "LS-DEM", f"block-{place}") for place in (1, 3)
-    ]
-    # six samples of configuration-4 by NSCD, one of them failed and one collapsed, are too few for anything
-    assert {row[4:] for row in table.rows if row[:2] == ("configuration-4", "NSCD rigid")} == {
-        ("none", "none")
-    }
