@@ -42,8 +42,8 @@ def _table(part):
         rows.append((name_of(name) if name else "nothing", kind, less, gain))
     return Table(
         f"{sentence_case(part.readings)[:-1]}: how many times less likely each cause is than {first.title}, and its "
-        f"gain over nothing [nats]. Within {RATIO} times the tests do not tell causes apart. A form from outside is none of "
-        "the effects of the registry.",
+        f"gain over nothing [nats]. Within {RATIO} times the tests do not tell causes apart. A form from outside is "
+        "none of the effects of the registry.",
         ("Cause", "Kind", "Less likely", "Gain"),
         tuple(rows),
         "llrr",

@@ -1,14 +1,10 @@
-"""Section on the causes of the differences between samples: figures, words and the summary over cases."""
+"""Section on the causes of the differences between samples: figures and words."""
 
-from blockshake.pages.blocks import Figure, Heading, Items, Section, Table, Text
+from blockshake.pages.blocks import Figure, Heading, Items, Section, Text
 from blockshake.pages.drawing import svg_of
-from blockshake.pages.wording import MISSING, model_label, number
+from blockshake.pages.wording import model_label, number
 from blockshake.study.sensitivity.figure import SHOWN, is_shown, plot_sensitivity
 from blockshake.study.sensitivity.findings import (
-    differs,
-    influence_words,
-    influences,
-    is_known,
     markers_by_height,
     sentence,
     shared_words,
@@ -16,7 +12,7 @@ from blockshake.study.sensitivity.findings import (
 
 
 def sensitivities(content):
-    """Influence of each random variable on the thickness of the envelopes, in one table and case by case."""
+    """Influence of each random variable on the thickness of the envelopes, case by case."""
     blocks = [
         Text(
             "Two measures tell where the differences between samples come from. The first-order Sobol index of the "
@@ -34,7 +30,6 @@ def sensitivities(content):
             "index holds a part of the other's, which is not parted: a variable without an effect of its own then has "
             "up to r squared of the other's share."
         ),
-        summary_table(content),
         Items(_shared(content)),
     ]
     for case in content.cases.values():
