@@ -22,14 +22,12 @@ COMPILED = (("ls-dem",), ("nscd-rigid", "nscd-elastic", "nscd-viscoelastic"))
 COMPILE = (
     "import sys, blockshake.simulation.simulate as s; [s.compile_kernels(model) for model in sys.argv[1:]]"
 )
-# files that take a minute: a parallel run begins with them, so that no worker is left with one at the end
+# files that take long: a parallel run begins with them, so that no worker is left with one at the end
 LONG = (
-    "test_workflow.py",
-    "test_make_case.py",
-    "test_published_records.py",
-    "test_failures.py",
-    "test_flights.py",
-)
+    "test_workflow.py", "test_parity.py", "test_causes_are_found.py", "test_metamorphic.py", "test_report.py",
+    "test_resume.py", "test_steps.py", "test_plan_campaign.py", "test_clocks.py", "test_flights.py",
+    "test_answers.py", "test_sampled_shapes.py", "test_failures.py", "test_measured_flights.py",
+)  # fmt: skip
 SHAPES = {
     "slab": {"box": [3.0, 3.0, 0.2]},
     "block": {"box": [0.8, 2.4, 1.6], "chamfer": 0.02},
