@@ -56,11 +56,11 @@ MOST_LINES = {
     "study/comparison": 602, "study/fragility": 579, "study/sensitivity": 700, "study/calibration": 1085,
     "study/report": 1863, "views": 750, "diagnosis": 340,
     "diagnosis/evidence": 1110, "diagnosis/outside": 675, "diagnosis/answer": 1570,
-    "diagnosis/nominal": 810, "diagnosis/misfit": 430, "diagnosis/verdict": 570, "diagnosis/gain": 1525,
+    "diagnosis/nominal": 810, "diagnosis/misfit": 430, "diagnosis/verdict": 570, "diagnosis/gain": 1498,
     "diagnosis/report": 913, "virtual": 485, "own_files": 1131, "cost": 310, "diagnosis/flight": 1190,
     "diagnosis/outcomes": 915, "diagnosis/planning": 578, "study/extension": 310,
 }  # fmt: skip
-MOST_LINES_TOGETHER = 53_700
+MOST_LINES_TOGETHER = 52_100
 
 
 def place(name, floors):
