@@ -41,7 +41,7 @@ examples: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python examples/own_campaign.py results/examples/own-campaign
 
 test: setup
-	$(BIN)/pytest -m "not slow and not hidden_effects and not faults and not cluster" --numprocesses $(CORES) --dist loadfile
+	$(BIN)/pytest -m "not slow and not hidden_effects and not faults and not cluster" --numprocesses $(CORES) --dist loadfile --no-loadscope-reorder
 
 test-slow: setup
 	$(BIN)/pytest -m slow
@@ -53,7 +53,7 @@ test-faults: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" BLOCKSHAKE_MOMENTS=$(MOMENTS) $(BIN)/pytest -m faults
 	$(BIN)/python bench/figures_of_docs.py faults
 
-# the shorter ones of these tests, on a study, with two kills: minutes
+# the shorter ones of these tests, on a study, with two kills, and workflows that fail: minutes
 test-faults-few: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" BLOCKSHAKE_MOMENTS=2 $(BIN)/pytest -m short_faults
 
@@ -62,7 +62,7 @@ test-faults-few: setup
 test-cluster: cluster
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest -m cluster
 
-# four campaigns with and without a hidden effect, diagnosed as a user would: minutes
+# four campaigns with and without a hidden effect, diagnosed as a user would, and a short one of every class: minutes
 test-hidden-few: setup
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pytest -m hidden_effects
 

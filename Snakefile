@@ -53,8 +53,3 @@ for case in CASES:
                 model=MODELS,
                 case=case,
             ),
-
-
-rule ladder:
-    input:
-        f"results/{STUDY}/ladder.json",

@@ -28,19 +28,20 @@ from recorded_lmgc90 import SPEED_HEADER, speed_rows
 from schedule import deep_diagnosis, hours, measured, planned, shares, timed_study
 from shear_damping import HEADER as SHEAR_HEADER
 from shear_damping import shear_damping_rows, shear_damping_words
+from the_paper import HEADER, count_words, judge_statements
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import load_json, load_yaml, write_text
 from blockshake.geometry.structure import load_structure
-from blockshake.pages.wording import model_label, number
+from blockshake.pages.wording import given, model_label, number
 from blockshake.simulation.simulate import simulate
 from blockshake.study.calibration.section import answers_table, tests_table
+from blockshake.study.comparison.tables import other_settings_table
 from blockshake.study.config import load_config
 from blockshake.study.report.content import load_content
 from blockshake.study.sampling.distributions import LINKED, TABLE_2
 from blockshake.study.sampling.sample_parameters import sample_parameters
 from blockshake.study.sensitivity.findings import markers_by_height, sentence
-from blockshake.study.statements.section import HEADER, count_words
 from blockshake.study.stiffness.wave_speed import calibrate_stiffness, stiffness_parameters
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -55,15 +56,14 @@ _CHANGES = {
     "friction 0.25": dict.fromkeys(_CONCRETE, 0.25),
     "friction 0.12": dict.fromkeys(_CONCRETE, 0.12),
 }
-STUDY, PAPER = Path("results/study/the-paper.json"), Path("results/paper/the-paper.json")
 FAULTS = Path("results/faults.json")  # of `make test-faults`
 _STEPS = {"nscd-rigid": 1e-3, "ls-dem": 5e-5}  # s
 DEFAULT = DOCS.parent / "config" / "study.yaml"
 DIAGNOSED = DOCS.parent / "data" / "virtual-campaign" / "configuration-2"
 PROFILE = DOCS.parent / "profiles" / "slurm" / "profile.yaml"
+DONE = Path("reports/study.html")
 _CORES = (1, 64, 1024)
 _SHOWN = 8  # rules that take most of the time
-LITERAL = Path("results/literal/the-paper.json")  # of config/literal.yaml
 
 
 def slenderness():
@@ -108,51 +108,50 @@ def single_changes():
     return markdown(("change", *heads), rows)
 
 
-def statements():
-    """Findings of the default study on the statements of the paper; None where the study has not been run."""
-    return _findings(STUDY)
-
-
-def paper_statements():
-    """The same of the paper's study."""
-    return _findings(PAPER)
-
-
-def _findings(path):
-    if not path.is_file():
+def content_of(study):
+    """`Content` of one of the studies in config/ by its name; None where it has not been run to its end."""
+    if not Path("reports", f"{study}.html").is_file():
         return None
-    found = load_json(path)
-    lines = _study_words(found, count_words(found["findings"]))
-    if found.get("other_settings"):
-        lines += [
-            "",
-            "### Settings as printed",
-            "",
-            markdown(found["other_settings"][0], found["other_settings"][1:]),
-        ]
-    for heading, rows in found["findings"].items():
+    config = load_config(DEFAULT.with_name(f"{study}.yaml")).model_dump(mode="json")
+    return load_content(config, Path("results", study), Path("logs", study))
+
+
+def statements(study):
+    """Findings of a study on the statements of the paper; None where it has not been run."""
+    content = content_of(study)
+    if content is None:
+        return None
+    found, prices = judge_statements(content), other_settings_table(content)
+    lines = _study_words(content, count_words(found))
+    if prices:
+        lines += ["", "### Settings as printed", "", markdown(prices.header, prices.rows)]
+    for heading, rows in found.items():
         lines += ["", f"### {heading}", "", markdown(HEADER, rows)]
     return "\n".join(lines)
 
 
-def _study_words(found, *more):
+def _study_words(content, *more):
     """The study that findings come from, and more sentences, in lines."""
-    cases, models = "; ".join(found["cases"]), ", ".join(found["models"])
+    study = content.study
+    cases = "; ".join(
+        f"{case.name}, {case.motion} at {given(case.settings['scale'])}, {given(case.settings['duration'])} s"
+        for case in content.cases.values()
+    )
     words = (
-        f"Study `{found['study']}` (blockshake {found['version']}): {found['description']}. "
-        f"{found['samples']} samples; {models}; {cases}."
+        f"Study `{study['name']}` (blockshake {content.versions['blockshake']}): "
+        f"{' '.join(study['description'].split())}. {len(content.design)} samples; "
+        f"{', '.join(map(model_label, study['models']))}; {cases}."
     )
     return textwrap.wrap(" ".join([words, *more]), 100, break_on_hyphens=False)
 
 
 def printed_settings():
     """Prices of the printed settings, each alone and all together; None where their study has not been run."""
-    if not LITERAL.is_file():
+    content = content_of("literal")
+    if content is None:
         return None
-    found = load_json(LITERAL)
-    return "\n".join(
-        [*_study_words(found), "", markdown(found["other_settings"][0], found["other_settings"][1:])]
-    )
+    prices = other_settings_table(content)
+    return "\n".join([*_study_words(content), "", markdown(prices.header, prices.rows)])
 
 
 def arrival_definitions():
@@ -164,9 +163,9 @@ def arrival_definitions():
 
 def cost_of_samples():
     """Core hours of 1,000 samples of the default study, by model and configuration; None where it has not been run."""
-    if not STUDY.is_file():
+    if not DONE.is_file():
         return None
-    config, times = load_config(DEFAULT), measured(".", STUDY.parent.name)
+    config, times = load_config(DEFAULT), measured(".", "study")
     cases = [case.name for case in config.cases]
     rows = [
         (
@@ -181,9 +180,9 @@ def cost_of_samples():
 
 def times_on_a_cluster():
     """Hours of the studies and of a deep diagnosis by the number of cores; None where no study has been run."""
-    if not STUDY.is_file():
+    if not DONE.is_file():
         return None
-    done, times = load_config(DEFAULT), measured(".", STUDY.parent.name)
+    done, times = load_config(DEFAULT), measured(".", "study")
     plans = {}
     for words, path in (
         ("the default study", DEFAULT),
@@ -203,7 +202,7 @@ def times_on_a_cluster():
 
 def joint_calibration():
     """Answers of the default study's open tests; None where the study has not been run."""
-    path = STUDY.with_name("calibration.json")
+    path = Path("results", "study", "calibration.json")
     if not path.is_file():
         return None
     found = load_json(path)
@@ -219,9 +218,9 @@ def shear_damping():
 
 def study_sensitivities():
     """Sentences of the default study's report on what makes its envelopes thick; None where it has not been run."""
-    if not STUDY.is_file():
+    content = content_of("study")
+    if content is None:
         return None
-    content = load_content(load_config(DEFAULT).model_dump(), STUDY.parent, "logs/study")
     lines = []
     for case in content.cases.values():
         chosen = markers_by_height(case)
@@ -235,9 +234,9 @@ def study_sensitivities():
 
 def study_shares():
     """CPU time of the default study by rule; None where it has not been run."""
-    if not STUDY.is_file():
+    if not DONE.is_file():
         return None
-    found = shares(".", STUDY.parent.name)
+    found = shares(".", "study")
     total = sum(seconds for *_, seconds in found)
     rest = [sum(row[column] for row in found[_SHOWN:]) for column in (1, 2)]
     rows = [
@@ -295,8 +294,8 @@ MAKERS = {
     "convergence": lambda: markdown(CONVERGENCE_HEADER, convergence_rows()),
     "slenderness": slenderness,
     "single-changes": single_changes,
-    "statements": statements,
-    "paper-statements": paper_statements,
+    "statements": lambda: statements("study"),
+    "paper-statements": lambda: statements("paper"),
     "printed-settings": printed_settings,
     "shear-damping": shear_damping,
     "joint-calibration": joint_calibration,

@@ -15,9 +15,10 @@ from pathlib import Path
 from answers import Scored
 from case_files import PAGE, ROOT, SEEDS, TRACK_RECORD, load_plan, truth_of, verdict_of
 from score_figures import figures
+from scored_record import ScoredRecord, write_scored_record
 from track_record_text import as_markdown, with_block
 
-from blockshake.diagnosis.verdict.track_record import TrackRecord, procedure_digest, write_track_record
+from blockshake.diagnosis.verdict.track_record import procedure_digest
 from blockshake.diagnosis.verdict.verdict import load_verdict
 from blockshake.files import load_json, write_text
 
@@ -42,7 +43,7 @@ def make_track_record(scored, efforts, seeds):
     commit = subprocess.run(
         ["git", "describe", "--always", "--dirty", "--abbrev=12"], cwd=ROOT, capture_output=True, text=True, check=False
     )  # fmt: skip
-    return TrackRecord(
+    return ScoredRecord(
         date=datetime.date.today().isoformat(),
         commit=commit.stdout.strip() or "not under version control",
         procedure=procedure_digest(),
@@ -66,7 +67,7 @@ def main(arguments):
     text = as_markdown(record)
     sys.stdout.write(text + "\n")
     if asked.seeds == SEEDS:
-        write_track_record(asked.track_record, record)
+        write_scored_record(asked.track_record, record)
         write_text(asked.page, with_block(asked.page.read_text(encoding="utf-8"), "figures", text))
 
 

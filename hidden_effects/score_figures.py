@@ -2,8 +2,9 @@
 
 import numpy as np
 from outside_forces import OUTSIDE
+from scored_record import Answers, JudgedCase, Median, Row
 
-from blockshake.diagnosis.verdict.track_record import Answers, JudgedCase, Median, Row, Share
+from blockshake.diagnosis.verdict.track_record import Share
 from blockshake.effects.registry import EFFECTS
 from blockshake.statistics.intervals import quantile_ranks, share_interval
 
@@ -22,7 +23,7 @@ def figures(scored):
     Returns
     -------
     dict
-        ``shares``, ``medians``, ``confusion`` and ``cases`` of a `TrackRecord`.
+        ``shares``, ``medians``, ``confusion`` and ``cases`` of a `ScoredRecord`.
     """
     clean, known, outside, pairs = (
         [case for case in scored if case.kind == kind] for kind in ("clean", "effect", "outside", "pair")

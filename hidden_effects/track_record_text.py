@@ -1,8 +1,8 @@
 """Tables of the track record as text, for the terminal and for docs/results/hidden-effects.md; no figure is typed."""
 
 from outside_forces import OUTSIDE
+from scored_record import Answers
 
-from blockshake.diagnosis.verdict.track_record import Answers
 from blockshake.effects.registry import EFFECTS
 
 _WORDS = {True: "met", False: "missed", None: ""}
@@ -13,7 +13,7 @@ def as_markdown(record):
 
     Parameters
     ----------
-    record : TrackRecord
+    record : ScoredRecord
 
     Returns
     -------

@@ -1,7 +1,11 @@
 import copy
+import os
 import signal
 import subprocess
 import sys
+
+# before NumPy is loaded: threads of linear algebra beyond the cores wait for each other most of the time
+os.environ |= dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 import numpy as np
 import pytest
@@ -18,6 +22,12 @@ COMPILED = (("ls-dem",), ("nscd-rigid", "nscd-elastic", "nscd-viscoelastic"))
 COMPILE = (
     "import sys, blockshake.simulation.simulate as s; [s.compile_kernels(model) for model in sys.argv[1:]]"
 )
+# files that take long: a parallel run begins with them, so that no worker is left with one at the end
+LONG = (
+    "test_workflow.py", "test_parity.py", "test_causes_are_found.py", "test_metamorphic.py", "test_report.py",
+    "test_resume.py", "test_steps.py", "test_plan_campaign.py", "test_clocks.py", "test_flights.py",
+    "test_answers.py", "test_sampled_shapes.py", "test_failures.py", "test_measured_flights.py",
+)  # fmt: skip
 SHAPES = {
     "slab": {"box": [3.0, 3.0, 0.2]},
     "block": {"box": [0.8, 2.4, 1.6], "chamfer": 0.02},
@@ -32,6 +42,12 @@ def pytest_sessionstart(session):
     if getattr(session.config.option, "numprocesses", None) and not hasattr(session.config, "workerinput"):
         processes = [subprocess.Popen([sys.executable, "-c", COMPILE, *models]) for models in COMPILED]
         assert [process.wait() for process in processes] == [0, 0]
+
+
+def pytest_collection_modifyitems(items):
+    """Let the files of `LONG` come first, in their order."""
+    place = {name: number for number, name in enumerate(LONG)}
+    items.sort(key=lambda item: place.get(item.path.name, len(LONG)))
 
 
 @pytest.fixture(scope="session")

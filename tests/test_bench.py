@@ -26,6 +26,7 @@ def result(tmp_path_factory):
     return {**json.loads(output.read_text()), "table": table}
 
 
+@pytest.mark.slow
 def test_the_smallest_run_reports_every_part(result):
     assert set(result) == {
         "machine", "versions", "force_evaluation", "arithmetic", "simulated_second", "walls", "nscd_step",
@@ -110,6 +111,7 @@ def test_the_motion_is_the_sine_it_says():
     assert motion.evaluate(np.array([0.5]), derivative=2)[0, 0] == pytest.approx(1.5, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_the_contact_kernel_is_vectorised(result):
     # scalar code would have no packed share; sums over the lanes are the few scalar operations left
     loops = [loop for loop in result["arithmetic"]["loops"] if not loop["gathers"]]
@@ -118,6 +120,7 @@ def test_the_contact_kernel_is_vectorised(result):
     assert 0.0 < result["arithmetic"]["share_of_peak"] < 1.0
 
 
+@pytest.mark.slow
 def test_the_contact_kernel_has_no_more_operations_than_were_accepted(result):
     """Counted in its machine code, not timed: `make bench ARGUMENTS=--accept` accepts others."""
     import accepted

@@ -12,7 +12,7 @@ from blockshake.sources import compiled_sources, kernel_sources, module_sources,
 
 SCRIPTS = sorted(path.stem for path in (PACKAGE.parents[1] / "workflow" / "scripts").glob("*.py"))
 RULES = ("diagnosed", "diagnosis")
-JUDGING = ("pages/", "views/", "study/report/", "study/statements/", "diagnosis/report/", "diagnosis/evidence/",
+JUDGING = ("pages/", "views/", "study/report/", "diagnosis/report/", "diagnosis/evidence/",
            "diagnosis/gain/", "diagnosis/verdict/")  # fmt: skip
 SHOWING = ("section.py", "figure.py")
 FOLDERS = {"ls-dem": "solvers/ls_dem/", "nscd-rigid": "solvers/nscd/"}

@@ -18,10 +18,10 @@ from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.nscd.parameters import DeformableParameters, NscdParameters
 from blockshake.study.analyses import OF_THE_PAPER
 from blockshake.study.calibration.answers import LEVEL
+from blockshake.study.calibration.settings import FRICTION
 from blockshake.study.config import load_config
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
 from blockshake.study.sampling.distributions import LINKED, TABLE_2
-from blockshake.study.statements.table import STATEMENTS
 from blockshake.study.stiffness.wave_step import STEP_VELOCITY
 
 PAGE = HOME / "docs" / "results" / "the-paper.md"
@@ -49,8 +49,11 @@ def studies():
     return [load_config(HOME / "config" / f"{name}.yaml") for name in ("study", "paper")]
 
 
-def test_every_figure_table_and_equation_of_the_paper_stands_once():
-    stated = [(one.place, one.claim) for rows in STATEMENTS.values() for one in rows]
+def test_every_figure_table_and_equation_of_the_paper_stands_once(monkeypatch):
+    monkeypatch.syspath_prepend(str(HOME / "bench"))
+    from the_paper import STATEMENTS
+
+    stated = [one[:2] for rows in STATEMENTS.values() for one in rows]
     stated += [(row[0], row[1]) for row in UNDECIDED]
     assert len({claim for _, claim in stated}) == len(stated)
     places = " ".join(place for place, _ in stated)
@@ -112,6 +115,13 @@ def test_instruments_of_the_structure_files(structures):
         max(len(file.displacement_transducers) for file in files),
         max(len(file.markers) for file in files),
     ]
+
+
+def test_friction_is_searched_in_more_than_the_printed_range(studies):
+    for study in studies:
+        searched = {**study.calibration.ranges}.get("friction.concrete.concrete", FRICTION)
+        assert searched.lowest <= 0.3
+        assert searched.highest >= 0.8
 
 
 def numbers(words):

@@ -191,9 +191,6 @@ def _parser():
     )
     command.add_argument("--sensors", metavar="SENSORS.yaml", help="default: those of the structure file")
     command.add_argument("--duration", type=float, metavar="S", help="of every test (default: its motion's)")
-    command.add_argument(
-        "--costs", metavar="COSTS.yaml", help="of one measurement more, over that of a shake"
-    )
     command.add_argument("--output", required=True, metavar="DIR", help="of plan.json and plan.html")
 
     command = add("extend-study", _extend_study, "a study in which the cause of a verdict is a variable")
@@ -402,12 +399,11 @@ def _plan_campaign(options):
     check_output(f"{options.output}/plan.json")
     from blockshake.diagnosis.planning.nominal_tests import load_asked
     from blockshake.diagnosis.planning.page import addition_rows, matrix_rows, write_plan
-    from blockshake.diagnosis.planning.plan import load_costs, plan_campaign
+    from blockshake.diagnosis.planning.plan import plan_campaign
 
     _show_progress()
-    costs = load_costs(options.costs)
     asked = load_asked(options.structure, options.motions, options.sensors, options.duration)
-    told, additions = plan_campaign(asked, costs, logging.getLogger("blockshake").info)
+    told, additions = plan_campaign(asked, logging.getLogger("blockshake").info)
     write_plan(options.output, asked, told, additions)
     _print_table(matrix_rows(told))
     print()

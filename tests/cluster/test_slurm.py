@@ -11,7 +11,7 @@ from checkout import LIMIT, Checkout
 from likeness import unlike
 
 pytestmark = pytest.mark.cluster
-TARGET = "configuration-1"  # the study but for its report and its ladder: minutes less
+TARGET = "configuration-1"  # the study but for its report: minutes less
 BATCH = "rule_simulate_batch"
 DURATION = 1.0  # s; of motion, so that a batch can be met at work
 

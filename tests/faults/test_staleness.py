@@ -10,8 +10,8 @@ from work import BOTH, WORKS
 
 pytestmark = pytest.mark.faults
 # models that the scripts of rules run, but for those whose jobs name one
-_MODELS = {"climb_ladder": ("ls-dem",), "climb_samples": ("nscd-rigid",)}
-GATHER = {"all", "ladder", "diagnose"}  # rules without a script
+_MODELS = {"climb_samples": ("nscd-rigid",)}
+GATHER = {"all", "diagnose"}  # rules without a script
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,7 @@ from blockshake.files import load_yaml
 
 # arguments of Snakemake by work
 WORKS = {
-    "study": ("all", "ladder"),
+    "study": ("all",),
     "diagnosis": ("diagnose", "--config", "campaign=small-campaign", "effort=quick"),
 }
 # the shorter tests are those of the study: `make test-faults-few`

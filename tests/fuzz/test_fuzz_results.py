@@ -35,11 +35,9 @@ VERDICT = {
     "word": "probable", "missing": ["two causes act together"],
 }  # fmt: skip
 DECISION = made_up_decision("named", ("weak-joint",)).model_dump(mode="json")
-_FINDING = Finding(
-    "sensor-gain", ("a-x",), "gain", np.array([0.1]), np.array([[1e-4]]), 0.01, ("t1",), (("b", ("c",), "d"),)
-)
+_FINDING = Finding("sensor-gain", ("a-x",), "gain", np.array([0.1]), np.array([[1e-4]]), 0.01, ("t1",))
 PARITY = {
-    "findings": [_FINDING.as_json() | {"where": ["a-x"], "tests": ["t1"], "rivals": [["b", ["c"], "d"]]}],
+    "findings": [_FINDING.as_json() | {"where": ["a-x"], "tests": ["t1"]}],
     "markers": {"m": {"noise": 1e-4, "misfit": None}}, "clock": {"t1": {"lag": 0.0, "lag_error": 1e-3}},
     "channels": {"a-x": {"gain": 0.1, "gain_error": 0.01}}, "looked_at": 12,
     "falls": {"t1": {"body": "a", "time": 2.5}},

@@ -24,7 +24,7 @@ STUDY = {
                           "materials.stone.density": {"distribution": "lognormal", "mean": 2400.0, "cov": 0.04}},
         "correlation": "c.csv", "linked": {},
     },
-    "ladder": {"motions": ["m.csv"], "first": 0.5, "increment": 0.25, "highest": 4.0, "largest_drift": 0.4},
+    "ladder": {"first": 0.5, "increment": 0.25, "highest": 4.0, "largest_drift": 0.4},
     "diagnosis": {"campaigns": [], "effort": "quick"},
 }  # fmt: skip
 CORRELATION = (

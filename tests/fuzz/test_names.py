@@ -153,7 +153,6 @@ def test_a_study_in_an_odd_folder_reaches_no_shell(odd, tmp_path):
     study = copy.deepcopy(STUDY)
     study["cases"][0] |= {"structure": str(odd / "structure.yaml"), "motion": str(odd / "m.csv")}
     study["cases"][0] |= {"measured": {"campaign": str(odd), "test": "t1"}, "scale": 1.0}
-    study["ladder"]["motions"] = [str(odd / "m.csv")]
     study["ensemble"]["correlation"] = str(odd / "c.csv")
     (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
     command = [

@@ -73,6 +73,7 @@ def test_the_same_seed_gives_the_same_bytes(short, tmp_path):
 CLASSES = [(), *((name,) for name in (*EFFECTS, *OUTSIDE)), ("reduced-bearing", "outside-blow")]
 
 
+@pytest.mark.hidden_effects
 @pytest.mark.parametrize("names", CLASSES)
 def test_a_campaign_of_every_class_is_in_order_and_says_nothing(names, short, tmp_path):
     folder = _make(tmp_path, LS_DEM_SEED, *names)
@@ -93,6 +94,7 @@ def bare(tmp_path_factory):
     return _make(tmp_path_factory.mktemp("bare"), NSCD_SEED)
 
 
+@pytest.mark.hidden_effects
 @pytest.mark.parametrize("name", OUTSIDE)
 def test_a_cause_from_outside_acts_in_its_tests_alone(name, bare, tmp_path):
     folder = _make(tmp_path, NSCD_SEED, name)

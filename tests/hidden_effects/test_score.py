@@ -22,9 +22,9 @@ from make_case import name_of_test, structure_file
 from outside_forces import OUTSIDE
 from score import make_track_record
 from score_figures import LATE, figures
+from scored_record import load_scored_record, write_scored_record
 from track_record_text import as_markdown, block_of, with_block
 
-from blockshake.diagnosis.verdict.track_record import load_track_record, write_track_record
 from blockshake.diagnosis.verdict.verdict import Verdict, write_verdict
 from blockshake.effects.registry import EFFECTS
 from blockshake.errors import InputError
@@ -302,8 +302,8 @@ def test_intervals_of_medians_are_order_statistics():
 
 def test_the_track_record_comes_back_from_its_file(perfect, tmp_path):
     track_record = make_track_record(perfect, PLAN.efforts, PLAN.digest)
-    write_track_record(tmp_path / "track-record.json", track_record)
-    assert load_track_record(tmp_path / "track-record.json") == track_record
+    write_scored_record(tmp_path / "track-record.json", track_record)
+    assert load_scored_record(tmp_path / "track-record.json") == track_record
     page = with_block(f"before\n{EMPTY}\nafter\n", "figures", as_markdown(track_record))
     assert block_of(page, "figures") == as_markdown(track_record)
     assert page.startswith("before")
@@ -319,7 +319,7 @@ def test_scoring_goes_from_the_files_of_a_run_to_track_record_and_page(perfect, 
     page.write_text(EMPTY)
     asked = ["--results", str(tmp_path), "--track-record", str(record), "--page", str(page)]
     score.main(asked)
-    text = as_markdown(load_track_record(record))
+    text = as_markdown(load_scored_record(record))
     assert block_of(page.read_text(), "figures") == text == capsys.readouterr().out.strip()
     verdict_of(tmp_path, perfect[0].name).unlink()
     with pytest.raises(InputError):
@@ -351,19 +351,19 @@ def test_a_track_record_that_contradicts_itself_is_refused(perfect, tmp_path, ch
     change(record)
     (tmp_path / "track-record.json").write_text(json.dumps(record))
     with pytest.raises(InputError) as error:
-        load_track_record(tmp_path / "track-record.json")
+        load_scored_record(tmp_path / "track-record.json")
     assert key in str(error.value)
 
 
 def test_a_missing_track_record_is_one_line(tmp_path):
     with pytest.raises(InputError):
-        load_track_record(tmp_path / "none.json")
+        load_scored_record(tmp_path / "none.json")
 
 
 @pytest.fixture(scope="module")
 def record():
     """The record that the package ships, where it is of the plan of today."""
-    shipped = load_track_record(TRACK_RECORD)
+    shipped = load_scored_record(TRACK_RECORD)
     if shipped.seeds != PLAN.digest:
         pytest.skip("the track record is of an earlier plan: make test-hidden measures a new one")
     return shipped

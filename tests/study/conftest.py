@@ -129,7 +129,7 @@ def fake(tmp_path_factory):
 @pytest.fixture(scope="session")
 def report(fake, tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
-    paths = folder / "fake.html", folder / "fake.pdf", folder / "the-paper.json"
+    paths = folder / "fake.html", folder / "fake.pdf"
     make_report(fake.study, fake.results, fake.logs, *paths)
     return paths
 

@@ -103,7 +103,6 @@ class FakeStudy:
             },
             "output_rate": 200.0,
             "ladder": {
-                "motions": ["alkion", "basso-tirreno"],
                 "first": 0.5,
                 "increment": 0.25,
                 "largest_drift": 0.4,
@@ -116,8 +115,7 @@ class FakeStudy:
         }
         write_json(self.results / "calibration.json", calibrated(self.study))
         write_dataset(self.results / "fragility" / "configuration-1.nc", climbed_and_fitted())
-        for place, name in enumerate(("basso-tirreno", "alkion")):
-            write_dataset(self.results / "motions" / f"{name}.nc", motion(name, place))
+        write_dataset(self.results / "motions" / "basso-tirreno.nc", motion("basso-tirreno", 0))
         self._write_design()
         for case in self.study["cases"]:
             self._write_case(case)

@@ -75,11 +75,6 @@ def test_a_motion_has_one_baseline_in_a_study(record):
         InputError, match=r"mine\.yaml: cases\.1\.baseline: expected one baseline of .*drift\.AT2"
     ):
         check_config(mapping, "mine.yaml")
-    mapping = study(record) | {"ladder": {"motions": [str(record)], "baseline": 0.2}}
-    with pytest.raises(InputError, match=r"mine\.yaml: ladder\.baseline: expected one baseline"):
-        check_config(mapping, "mine.yaml")
-    mapping["ladder"]["baseline"] = "auto"
-    check_config(mapping, "mine.yaml")
 
 
 def test_window_before_the_record_is_refused(record):

@@ -91,38 +91,10 @@ def test_all_models_run_all_cases_of_the_default_study(mapping):
     [
         (("colour",), "red", "study.yaml: colour: unknown key"),
         (
-            ("ensemble", "size"),
-            9,
-            "study.yaml: ensemble.size: input should be greater than or equal to 10, not 9",
-        ),
-        (("cases", 0, "duration"), -1.0, "study.yaml: cases.0.duration"),
-        (
-            ("cases", 0, "structure"),
-            "no-such",
-            "study.yaml: cases.0.structure: no-such: expected a structure file or one of configuration-1",
-        ),
-        (("cases", 0, "motion"), "no-such", "no-such: expected a motion file or one of alkion"),
-        (
             ("cases", 1, "structure"),
             "configuration-1",
             "study.yaml: cases.0.name: expected a name of its own",
         ),
-        (
-            ("cases", 0, "name"),
-            "a b",
-            "study.yaml: cases.0.name: expected letters, digits, dots, hyphens, not 'a b'",
-        ),
-        (
-            ("cases", 3, "samples"),
-            {"nscd-rigid": 0},
-            "study.yaml: cases.3.samples.nscd-rigid: expected 1 to 50, not 0",
-        ),
-        (
-            ("cases", 0, "measured", "test"),
-            "t9",
-            "study.yaml: cases.0.measured.test: expected a test that is not sealed: ",
-        ),
-        (("cases", 0, "measured", "campaign"), "nowhere", "nowhere/campaign.yaml: expected a readable file"),
         (("convergence",), {"structure": "configuration-1"}, "study.yaml: convergence: "),
         (
             ("models", "no-such"),
@@ -140,29 +112,7 @@ def test_all_models_run_all_cases_of_the_default_study(mapping):
             {"time_step": 1e-5, "parameters": {"nscd.parts": 5}},
             "models.ls-dem-as-printed.parameters.nscd.parts: expected one of nscd.{theta, ",
         ),
-        (
-            ("cases", 0, "samples"),
-            {"ls-dem-as-printed": 5},
-            "study.yaml: cases.0.samples: expected one of ls-dem, ",
-        ),
-        (
-            ("models", "nscd-rigid", "parameters"),
-            {"friction.concrete.concrete": 0.5},
-            "study.yaml: models.nscd-rigid.parameters.friction.concrete.concrete: expected a parameter of the solver",
-        ),
-        (
-            ("models", "nscd-rigid", "parameters"),
-            {"nscd.parts": 5},
-            "models.nscd-rigid.parameters.nscd.parts: expected one of nscd.{theta, ",
-        ),
-        (
-            ("ensemble", "distributions", "friction.concrete.concrete", "cov"),
-            0.0,
-            "friction.concrete.concrete",
-        ),
-        (("diagnosis",), {"campaigns": ["no/such/folder"]}, "no/such/folder"),
         # what no machine can run
-        (("models", "nscd-rigid", "time_step"), 1.0, "nscd-rigid.time_step: expected at most 0.01 s, not 1"),
         (("models", "nscd-rigid", "time_step"), 1e-15, "nscd-rigid.time_step: expected at most 1e+11 steps"),
         (("output_rate",), 1e9, "output_rate: expected a run of at most 8.6 GB"),
         (("cases", 0, "duration"), 1e9, "cases.0.duration: expected at most"),
@@ -170,6 +120,7 @@ def test_all_models_run_all_cases_of_the_default_study(mapping):
     ],
 )
 def test_what_is_wrong_is_named(mapping, path, value, line):
+    """Beside the wrong values of every key, tests/own_files/wrong_keys.py."""
     place = mapping
     for key in path[:-1]:
         place = place[key]
@@ -193,7 +144,6 @@ def test_nothing_more_is_needed():
     config = check_config(copy.deepcopy(NEEDED), "mine.yaml")
     assert config.cases[0].measured is None
     assert config.calibration is None
-    assert config.ladder.motions == ()
 
 
 @pytest.mark.parametrize("key", NEEDED)
@@ -245,13 +195,6 @@ def test_a_decimal_comma_is_named():
         InputError, match=r"cases\.0\.75: a key of letters was expected; numbers take a decimal point"
     ):
         check_config(mapping, "mine.yaml")
-
-
-def test_friction_is_calibrated_against_a_measured_test_alone(mapping):
-    mapping["cases"][0]["measured"] = None
-    line = "calibration.cases.ls-dem: expected cases with a measured test: .*, not configuration-1"
-    with pytest.raises(InputError, match=line):
-        check_config(mapping, "study.yaml")
 
 
 def test_check_says_what_a_good_file_is(monkeypatch):
@@ -439,8 +382,10 @@ def test_a_study_remarks_what_its_structures_hardly_mean(mapping, cube, tmp_path
     assert "80 s are simulated of a motion of" in told
 
 
-@pytest.mark.parametrize("axis", ["x", "y", "z"])
-@pytest.mark.parametrize(("duration", "remarked"), [(3.0, True), (4.4, True), (4.6, False), (6.0, False)])
+@pytest.mark.parametrize(
+    ("axis", "duration", "remarked"),
+    [("x", 4.4, True), ("x", 4.6, False), ("y", 4.4, True), ("z", 4.4, True)],
+)
 def test_a_window_that_cuts_the_strong_motion_is_remarked(mapping, cube, tmp_path, axis, duration, remarked):
     """Even shaking from 1 to 4.684 s: 95 % of its Arias intensity is there after 3.5 s of it, at 4.5 s."""
     time = np.arange(2001) / 200.0

@@ -7,7 +7,8 @@ from blockshake import store
 from blockshake.files import content_digest, write_json
 from blockshake.store import Store
 from blockshake.study.config import Ladder
-from blockshake.study.ensembles import ladder
+from blockshake.study.ensembles.batch import CaseRuns
+from blockshake.study.fragility import climb
 from blockshake.study.sampling.latin_hypercube import write_design
 from blockshake.study.stiffness import wave_speed
 
@@ -27,18 +28,9 @@ class CutShortError(Exception):
 
 
 def _climb(path, store):
-    climbed = [CASE], {"alkion": "auto"}, 1e-4, RUNGS
-    write_json(path, ladder.climb_ladders(*climbed, Store(store, "source")))
-
-
-def test_a_structure_of_two_cases_is_climbed_once_for_the_longer_one(tmp_path, monkeypatch):
-    climbed = []
-    monkeypatch.setattr(
-        ladder, "climb", lambda structure, runs, *_: climbed.append(runs.case["duration"]) or []
-    )
-    cases = [CASE, CASE | {"duration": 0.1}]
-    ladder.climb_ladders(cases, {"alkion": "auto"}, 1e-4, RUNGS, Store(tmp_path, "source"))
-    assert climbed == [0.1]
+    runs = CaseRuns(CASE, "nscd-rigid", {"time_step": 1e-3}, {})
+    climbed = climb.climb_samples(runs, pd.DataFrame(index=[0]), RUNGS, Store(store, "source"))
+    write_json(path, climbed["peak"].values.tolist())
 
 
 def _calibrate(path, store):
@@ -47,7 +39,7 @@ def _calibrate(path, store):
 
 # what makes the rule's file, the module and the function that makes a unit, and how many units are let through
 RULES = {
-    "ladder": (_climb, ladder, "simulate", 2),
+    "climbs": (_climb, climb, "simulate", 2),
     "stiffness": (_calibrate, wave_speed, "calibrate_stiffness", 1),
 }
 

@@ -68,6 +68,8 @@ def test_bad_input_of_the_first_job_ends_a_study_at_once(tmp_path):
     assert "Ended with exit code 2" in (tmp_path / "logs" / "small" / "draw_samples.log").read_text()
 
 
+@pytest.mark.faults
+@pytest.mark.short_faults
 def test_a_bug_ends_a_study_at_once_with_exit_1(tmp_path):
     checkout = Checkout(tmp_path)
     drawing_fails(checkout, "return {}['a\\nb']")
@@ -77,6 +79,8 @@ def test_a_bug_ends_a_study_at_once_with_exit_1(tmp_path):
     assert last_lines(answer, 1) == ["  log: logs/small/draw_samples.log"]
 
 
+@pytest.mark.faults
+@pytest.mark.short_faults
 def test_a_job_that_is_killed_ends_a_study_too(tmp_path):
     checkout = Checkout(tmp_path)
     drawing_fails(checkout, "import os\nos.kill(os.getpid(), 9)")
@@ -85,12 +89,14 @@ def test_a_job_that_is_killed_ends_a_study_too(tmp_path):
     assert "the job ended without a word, as one does that is killed" in last_lines(answer, 3)[0]
 
 
+@pytest.mark.faults
+@pytest.mark.short_faults
 @pytest.mark.parametrize("engine", [(), ("--keep-going",)])
 def test_two_jobs_fail(tmp_path, engine):
     checkout = Checkout(tmp_path)
     drawing_fails(checkout, BOTH + IMPORT + REFUSED.format("design"))
     describe_fails(checkout, BOTH + IMPORT + REFUSED.format("motion"))
-    answer = checkout.snakemake("results/small/design.csv", "results/small/motions/alkion.nc", *engine)
+    answer = checkout.snakemake("results/small/design.csv", "results/small/motions/basso-tirreno.nc", *engine)
     assert answer.returncode == 2
     ends = answer.stderr[answer.stderr.rindex(NOT_FINISHED) :].splitlines()
     assert ends[-1].startswith("  log: logs/small/")
@@ -100,16 +106,20 @@ def test_two_jobs_fail(tmp_path, engine):
         assert reasons <= set(ends)
 
 
+@pytest.mark.faults
+@pytest.mark.short_faults
 def test_jobs_that_need_no_failed_one_go_on_where_that_is_asked_for(tmp_path):
     checkout = Checkout(tmp_path)
     describe_fails(checkout, IMPORT + REFUSED.format("motion"))
     answer = checkout.snakemake(
-        "results/small/motions/alkion.nc", "results/small/design.csv", "--keep-going", "--cores", "1"
+        "results/small/motions/basso-tirreno.nc", "results/small/design.csv", "--keep-going", "--cores", "1"
     )
     assert answer.returncode == 2
     assert (tmp_path / "results" / "small" / "design.csv").exists()
 
 
+@pytest.mark.faults
+@pytest.mark.short_faults
 def test_a_failure_ends_a_simulation_that_runs(tmp_path):
     checkout = Checkout(tmp_path)
     wait = (
@@ -117,7 +127,7 @@ def test_a_failure_ends_a_simulation_that_runs(tmp_path):
     )
     describe_fails(checkout, wait + IMPORT + REFUSED.format("motion"))
     checkout.append("study/ensembles/batch.py", LONG)
-    answer = checkout.snakemake(RUNS, "results/small/motions/alkion.nc")
+    answer = checkout.snakemake(RUNS, "results/small/motions/basso-tirreno.nc")
     assert (tmp_path / "simulates").exists()
     assert answer.returncode == 2
     assert last_lines(answer, 3)[0] == "blockshake: motion.csv: key: expected another motion"
@@ -125,6 +135,8 @@ def test_a_failure_ends_a_simulation_that_runs(tmp_path):
     assert not (tmp_path / RUNS).exists()
 
 
+@pytest.mark.faults
+@pytest.mark.short_faults
 def test_an_interrupted_study_says_so_last(tmp_path):
     checkout = Checkout(tmp_path)
     checkout.append("study/ensembles/batch.py", LONG)
@@ -149,7 +161,12 @@ def test_an_interrupted_study_says_so_last(tmp_path):
     ("body", "code", "reason"),
     [
         (IMPORT + REFUSED.format("readings"), 2, "readings.csv: key: expected another readings"),
-        ("return 1 / 0", 1, "ZeroDivisionError: division by zero"),
+        pytest.param(
+            "return 1 / 0",
+            1,
+            "ZeroDivisionError: division by zero",
+            marks=[pytest.mark.faults, pytest.mark.short_faults],
+        ),
     ],
 )
 def test_a_diagnosis_ends_with_its_first_step(tmp_path, body, code, reason):

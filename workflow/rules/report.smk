@@ -1,18 +1,10 @@
 rule make_report:
-    """The study as one self-contained page and as a PDF, and its findings on the paper, from the same content."""
+    """The study as one self-contained page and as a PDF, from the same content."""
     input:
         unpack(lambda wildcards: files_of_report()),
-        ladder_motions=expand(
-            "results/{study}/motions/{motion}.nc", study=STUDY, motion=MOTIONS
-        ),
-        shipped=[
-            definition("structures", f"configuration-{place}")
-            for place in (1, 2, 3, 4)
-        ],
     output:
         html=report("reports/{study}.html", category="Study"),
         pdf=report("reports/{study}.pdf", category="Study"),
-        paper="results/{study}/the-paper.json",
     log:
         "logs/{study}/make_report.log",
     conda:

@@ -1,11 +1,3 @@
-LS_DEM_STEP = (
-    config["models"].get("ls-dem", {}).get("time_step", SOLVERS["ls-dem"].time_step)
-)
-LADDER_MOTIONS = config["ladder"]["motions"] or list(
-    dict.fromkeys(case["motion"] for case in config["cases"])
-)
-
-
 rule compile_kernels:
     """A solver compiled once, before jobs that would all do it."""
     output:
@@ -62,28 +54,3 @@ rule run_twins:
         source=lambda wildcards: source_of("run_twins", wildcards.model),
     script:
         "../scripts/run_twins.py"
-
-
-rule climb_ladder:
-    """The paper's ladder of intensities with nominal parameters: what the cases' scales were taken from."""
-    input:
-        structures=[
-            definition("structures", case["structure"]) for case in CASES.values()
-        ],
-        motions=[definition("motions", motion) for motion in LADDER_MOTIONS],
-        kernels=kernels("ls-dem"),
-    output:
-        "results/{study}/ladder.json",
-    log:
-        "logs/{study}/climb_ladder.log",
-    conda:
-        "../envs/blockshake.yaml"
-    params:
-        cases=[case for case in CASES.values()],
-        motions={motion: BASELINES[motion] for motion in LADDER_MOTIONS},
-        ladder=lookup(dpath="ladder", within=config),
-        time_step=LS_DEM_STEP,
-        store="results/store",
-        source=source_of("climb_ladder", "ls-dem"),
-    script:
-        "../scripts/climb_ladder.py"

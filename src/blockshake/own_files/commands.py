@@ -23,10 +23,6 @@ def add_data_commands(add):
         "--column", action="append", default=[], metavar="AXIS=COLUMN",
         help="such as x=EW, repeatable; of a record with several channels x=NUMBER or x=NAME",
     )  # fmt: skip
-    command.add_argument(
-        "--time-step", type=float, metavar="S",
-        help="of a table without times; without --column all its values, row by row, are x",
-    )  # fmt: skip
     _add_layout(command)
     add_baseline(command)
     command.add_argument("--output", required=True, metavar="MOTION.csv")
@@ -123,10 +119,14 @@ def _convert_motion(options):
     from blockshake.validation import validated
 
     columns = _columns(options)
-    if _given(options, ("unit", "time", "time_unit", "time_step", *_LAYOUT)):
+    if _given(options, ("unit", "time", "time_unit", *_LAYOUT)):
+        if not options.unit:
+            raise InputError("--unit", "", "expected for a table; the unit and the columns are never guessed")
+        if not columns:
+            raise InputError("--column", "", "expected for a table")
         motion = load_motion_table(
-            options.file, validated(TableLayout, _given(options, _LAYOUT), "options"), _times(options, columns),
-            columns, options.unit, options.time_unit or "s", options.baseline, options.time_step,
+            options.file, validated(TableLayout, _given(options, _LAYOUT), "options"), options.time or "time_s",
+            columns, options.unit, options.time_unit or "s", options.baseline,
         )  # fmt: skip
     else:
         motion = load_motion(options.file, baseline=options.baseline, channels=columns or None)
@@ -134,19 +134,6 @@ def _convert_motion(options):
     print(f"{options.output}: {motion_line(motion)}")
     for remark in motion_remarks(motion):
         print(f"  remark: {remark}")
-
-
-def _times(options, columns):
-    """Name of the column of times of a table, whose options are checked for what only a user can say."""
-    if not options.unit:
-        raise InputError("--unit", "", "expected for a table; the unit and the columns are never guessed")
-    if options.time_step is None and not columns:
-        raise InputError("--column", "", "expected for a table, or --time-step for values without times")
-    if options.time_step is not None and not 0.0 < options.time_step < float("inf"):
-        raise InputError("--time-step", options.time_step, "expected a positive number of seconds")
-    if options.time_step is not None and (options.time or options.time_unit):
-        raise InputError("--time-step", options.time_step, "expected alone, or --time and --time-unit")
-    return options.time or "time_s"
 
 
 def _import_campaign(options):

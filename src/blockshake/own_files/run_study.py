@@ -106,9 +106,8 @@ def _seen_from(folder, study):
             case["measured"]["campaign"] = moved(case["measured"]["campaign"])
     if study["ensemble"].get("correlation"):
         study["ensemble"]["correlation"] = moved(study["ensemble"]["correlation"])
-    for key, listed in (("ladder", "motions"), ("diagnosis", "campaigns")):
-        if (study.get(key) or {}).get(listed):
-            study[key][listed] = [moved(name) for name in study[key][listed]]
+    if (study.get("diagnosis") or {}).get("campaigns"):
+        study["diagnosis"]["campaigns"] = list(map(moved, study["diagnosis"]["campaigns"]))
     return study
 
 

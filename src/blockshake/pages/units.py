@@ -4,8 +4,6 @@ from typing import NamedTuple
 
 from blockshake.pages.wording import CUBED, MICRO, SQUARED, number
 
-FINEST = 1e-4  # mm; histories are stored to this
-
 
 class Printed(NamedTuple):
     """A printed unit: how many of it make one of the SI unit, and its name."""

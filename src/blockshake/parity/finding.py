@@ -35,8 +35,6 @@ class Finding:
         Chance of such a reading with a sensor within its tolerance, times the number of hypotheses looked at.
     tests : tuple of str
         Names of the tests it holds for.
-    rivals : tuple of (effect, where, quantity)
-        Faults that explain the same readings nearly as well.
     """
 
     effect: str
@@ -46,7 +44,6 @@ class Finding:
     covariance: np.ndarray
     p: float
     tests: tuple
-    rivals: tuple = ()
 
     @property
     def standard_error(self):
@@ -62,9 +59,8 @@ class Finding:
     def from_json(cls, values):
         """Read a finding from the values of `as_json`."""
         tuples = {name: tuple(values[name]) for name in ("where", "tests")}
-        rivals = tuple((effect, tuple(where), quantity) for effect, where, quantity in values["rivals"])
         arrays = {name: np.array(values[name], dtype=float) for name in ("estimate", "covariance")}
-        return cls(**values | tuples | arrays | {"rivals": rivals})
+        return cls(**values | tuples | arrays)
 
 
 def chance_within(estimate, covariance, tolerance, freedom=np.inf):

@@ -8,7 +8,6 @@ import numpy as np
 from blockshake.parity.finding import chance_within
 
 _VAGUE = 1e3  # times a tolerance: as good as unknown
-_OVER_RIVALS = 9.0  # less in the sum of weighted squares than the best: not told apart
 
 
 class Fault(NamedTuple):
@@ -120,8 +119,8 @@ def name_faults(equations_of, unknowns, level, names, most, sound=0):
 
     Returns
     -------
-    named : dict of Fault to (p, rivals)
-        Chance times all hypotheses, and the faults that gain nearly as much.
+    named : dict of Fault to float
+        Chance times all hypotheses.
     equations : Equations
         The last ones.
     spread : float64 array
@@ -155,12 +154,7 @@ def name_faults(equations_of, unknowns, level, names, most, sound=0):
         if not clear:
             return named, equations, spread
         best = max(clear, key=gained.get)
-        rivals = tuple(
-            (fault.column.kind.effect, (names[fault.sensor],), fault.column.kind.quantity)
-            for fault, gain in gained.items()
-            if fault[:2] != best[:2] and gained[best] - gain < _OVER_RIVALS
-        )
-        named[best] = clear[best], rivals
+        named[best] = clear[best]
 
 
 def coloured_variance(parts, freedom, segment):

@@ -88,13 +88,13 @@ def check_body(body, marker_noise, level):
         equations_of, unknowns, level, body.markers, _MOST_FAULTS, _SOUND_MARKERS
     )
     covariance, findings = equations.posterior(spread)[1] if named else None, []
-    for fault, (p, rivals) in named.items():
+    for fault, p in named.items():
         numbers, by_test = unknowns.of(fault), fault.column is creep
         tests = (body.tests[fault.test],) if by_test else body.tests
         length = np.ptp(body.readings[fault.test][0]) if by_test else 1.0
         square = covariance[np.ix_(numbers, numbers)] / length**2
         kind, where = fault.column.kind, (body.markers[fault.sensor],)
-        findings.append(kind.finding(where, p, tests, sizes[numbers] / length, square, rivals))
+        findings.append(kind.finding(where, p, tests, sizes[numbers] / length, square))
     return MarkerCheck(tuple(findings), *made["noise"])
 
 

@@ -81,7 +81,7 @@ def check_transducer(name, held, level):
 
     named, equations, spread = name_faults(equations_of, unknowns, level, (name,), _MOST_FAULTS)
     mean, covariance = equations.posterior(spread)
-    for fault, (p, rivals) in named.items():
+    for fault, p in named.items():
         numbers, where = unknowns.of(fault), tests
         # along what is not told 0, as good as unknown
         estimate, square = np.zeros(len(numbers)), np.diag(spread[numbers] ** 2)
@@ -93,7 +93,7 @@ def check_transducer(name, held, level):
             before, after = held[where[0]].time[rows[fault.test] - 1 : rows[fault.test] + 1]
             estimate = np.array([estimate[0], 0.5 * (before + after)])
             square = np.diag([square[0, 0], (after - before) ** 2 / 12.0])
-        findings.append(fault.column.kind.finding((name,), p, where, estimate, square, rivals))
+        findings.append(fault.column.kind.finding((name,), p, where, estimate, square))
     (of_gain,) = unknowns.faults(gain.OF_TRANSDUCER)
     if of_gain not in equations.faults:
         return TransducerCheck(np.nan, np.nan, tuple(findings))

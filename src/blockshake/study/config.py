@@ -130,10 +130,8 @@ class StudyCase(Strict):
 
 
 class Ladder(Rungs):
-    """The intensities that are climbed to find each case's scale."""
+    """The intensities that samples climb, and the drift that counts as a potential collapse."""
 
-    motions: tuple[str, ...] = Field((), description="those of the cases by default, with their baselines")
-    baseline: Baseline = AUTO
     largest_drift: Positive | None = Field(
         None,
         description="displacement of a block relative to the slab that counts as a potential collapse, by default half "
@@ -248,9 +246,8 @@ class StudyConfig(Strict):
         return next((one for one in self.cases if one.name == pairs.get(case.name)), case)
 
     def named_motions(self):
-        """Key, name and baseline of every motion that is named, cases first; a ladder without motions has theirs."""
-        cases = [(f"cases.{index}", case.motion, case.baseline) for index, case in enumerate(self.cases)]
-        return [*cases, *(("ladder", motion, self.ladder.baseline) for motion in self.ladder.motions)]
+        """Key, name and baseline of every case's motion."""
+        return [(f"cases.{index}", case.motion, case.baseline) for index, case in enumerate(self.cases)]
 
     def samples(self, model, case):
         """Number of samples of a case by a model."""

@@ -56,9 +56,6 @@ def check_named(config, where):
         for name in part_parameters(settings.parameters)[0]:
             raise InputError(where, f"models.{model}.parameters.{name}", "expected a parameter of the solver")
     motions, structures = _read_motions(config, where), {}
-    for motion in config.ladder.motions:
-        with faults_of(where, "ladder.motions"):
-            scaled(motions[motion], config.ladder.highest, motion)
     for index, case in enumerate(config.cases):
         key = f"cases.{index}"
         for model, count in case.samples.items():
@@ -97,7 +94,7 @@ def _read_motions(config, where):
             expected = f"expected one baseline of {motion}; a copy of the file may have another"
             raise InputError(where, f"{key}.baseline", expected)
         if motion not in read:
-            with faults_of(where, f"{key}.motions" if key == "ladder" else f"{key}.motion"):
+            with faults_of(where, f"{key}.motion"):
                 read[motion] = load_motion(motion, baseline=baseline)
     return read
 
@@ -128,7 +125,7 @@ def check_names(config, where):
     paths = [("diagnosis.campaigns", folder) for folder in config.diagnosis.campaigns]
     if config.ensemble.correlation is not None:
         paths.append(("ensemble.correlation", config.ensemble.correlation))
-    naming = [("ladder.motions", motion) for motion in config.ladder.motions]
+    naming = []
     for index, case in enumerate(config.cases):
         naming += [(f"cases.{index}.structure", case.structure), (f"cases.{index}.motion", case.motion)]
         if case.measured:

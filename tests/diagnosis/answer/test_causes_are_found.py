@@ -19,9 +19,9 @@ BASE = {"joint": ["slab", "block-1"]}
 CAUSES = [
     ("eccentricity", {"body": "block-2"}, {"offset": 0.06}, {}, "two-blocks"),
     ("push", TOP, {"force": 4000.0}, {"starts": STARTS}, "two-blocks"),
-    ("rope", TOP, {"stiffness": 2e5}, {}, "two-blocks"),
 ]
 SLOW = [
+    ("rope", TOP, {"stiffness": 2e5}, {}, "two-blocks"),
     ("reduced-bearing", {}, {"inset": 0.08}, {}, "two-blocks"),
     (
         "stopper-contact",

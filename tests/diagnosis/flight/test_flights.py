@@ -31,6 +31,7 @@ def test_clean_tosses_have_no_cause_and_their_own_restitution(clean):
     assert impacts["corner"]["ratio"]["upper"] < 0.2 + 0.03
 
 
+@pytest.mark.slow
 def test_a_viscous_drag_is_found_outside_of_the_registry():
     opened, sealed = (campaign(numbers, {"external_forces": drag(0.6 * MASS)}) for numbers in (OPEN, SEALED))
     decision, _ = decide_flights(opened)

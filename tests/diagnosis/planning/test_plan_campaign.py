@@ -42,11 +42,11 @@ def test_the_command_writes_a_plan(tmp_path, monkeypatch, capsys):
     for one in written["effects"].values():
         seen = one["limits"][one["place"]]
         assert all(size is None or abs(size) >= 0.999 * abs(seen) for size in one["told_apart"].values())
-    worth = [one["pairs"] / one["cost"] for one in written["additions"]]
+    worth = [one["pairs"] for one in written["additions"]]
     assert worth == sorted(worth, reverse=True)
     words = [one["words"] for one in written["additions"]]
     assert {
-        "alkion@5.5 once more",
+        "alkion@5.5 times 1.25",
         "one more accelerometer on block-1",
         "weigh block-1 on two supports",
     } <= set(words)
@@ -82,12 +82,3 @@ def test_bad_input_is_one_line(tmp_path, motions, sensors, words):
     with pytest.raises(InputError, match=words) as error:
         load_asked(STRUCTURE, motions, file)
     assert "\n" not in str(error.value)
-
-
-def test_costs_of_a_file_replace_the_defaults(tmp_path):
-    write_text(tmp_path / "costs.yaml", "jack: 3.0\n")
-    assert plan.load_costs(tmp_path / "costs.yaml").jack == 3.0
-    assert plan.load_costs(None).jack == 1.0
-    write_text(tmp_path / "costs.yaml", "crane: 3.0\n")
-    with pytest.raises(InputError, match="unknown key"):
-        plan.load_costs(tmp_path / "costs.yaml")

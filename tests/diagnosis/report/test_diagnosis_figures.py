@@ -1,13 +1,10 @@
 import numpy as np
 import pytest
-from fake_findings import ECCENTRIC, OPEN, SEALED, departures, misfit, responses
+from fake_findings import OPEN, SEALED, departures, misfit, responses
 
-from blockshake.diagnosis.answer.decision import Cause
 from blockshake.diagnosis.gain.section import plot_drift
 from blockshake.diagnosis.misfit.figure import plot_misfit
 from blockshake.diagnosis.report.answer_section import plot_forces, plot_slab, shown_bodies, shown_tests
-from blockshake.diagnosis.report.odds_section import plot_odds
-from blockshake.diagnosis.report.size_section import plot_sizes
 
 BODIES = ("block-1", "block-2", "block-3")
 
@@ -65,29 +62,6 @@ def test_the_slab_s_rotation_is_drawn_in_milliradians():
     assert len(figure.axes) == len(OPEN)
     assert figure.axes[0].get_ylabel() == "rotation [mrad]"
     assert max(curves(figure.axes[0], "pitch")[0].get_ydata()) == pytest.approx(0.5, rel=1e-3)
-
-
-def test_odds_are_shaded_within_twenty_times_and_end_in_arrows_beyond_the_axis():
-    rows = [("a push", 0.0, 300.0), ("an eccentric mass", 2.0, 285.0), ("a soft joint", 60.0, -1.0)]
-    odds, gains = plot_odds(rows, [True, False, False], 40.0).axes
-    assert [label.get_text() for label in odds.get_yticklabels()] == [one[0] for one in rows] + ["nothing"]
-    assert len(odds.patches) == 2
-    markers = [line for line in odds.get_lines() if line.get_marker() in (">", "o")]
-    assert [line.get_marker() for line in markers] == ["o", "o", ">", ">"]
-    assert markers[1].get_xdata()[0] == pytest.approx(2.0 / np.log(10.0))
-    assert odds.get_yticklabels()[0].get_style() == "italic"
-    ticks = gains.get_xticks()
-    assert 0 in ticks
-    assert max(ticks) <= 1.3 * 300.0
-
-
-def test_a_size_stands_on_its_range_with_its_members():
-    cause = Cause.model_validate(ECCENTRIC)
-    (axes,) = plot_sizes([cause]).axes
-    members, size = (line for line in axes.get_lines() if line.get_marker() in ("|", "o"))
-    np.testing.assert_allclose(members.get_xdata(), [1e3 * one["offset"] for one in cause.members])
-    assert size.get_xdata()[0] == 50.0
-    assert axes.get_xlabel() == "offset [mm], eccentric mass of a block"
 
 
 def test_drift_with_and_without_the_cause_ends_where_it_can_be_predicted():

@@ -127,10 +127,9 @@ def test_every_cause_of_the_set_has_its_size(documents):
 
 
 def test_gain_stands_on_forces_and_on_responses(documents):
-    gains, scores, drifts = blocks_of(documents["named"], "table", "gain")
+    gains, drifts = blocks_of(documents["named"], "table", "gain")
     assert gains.header == ("Rival", "Forces", "Responses")
     assert {row[1:] for row in gains.rows} == {("80 % (70 to 90 %)", "60 % (50 to 70 %)")}
-    assert [row[0] for row in scores.rows] == ["LS-DEM", "NSCD rigid", "all together"]
     assert drifts.rows[0][0] == SEALED[0]
     assert drifts.rows[0][3] == "26 (20.8 to 31.2)"  # with the cause
     assert drifts.rows[0][-1] == "26.2"
@@ -240,3 +239,10 @@ def test_missing_results_are_named_and_nothing_is_written(tmp_path, name):
     with pytest.raises(InputError, match=name.replace(".", r"\.")):
         make_diagnosis_report(*fake.arguments(), tmp_path / "a.html", tmp_path / "a.pdf")
     assert not (tmp_path / "a.html").exists()
+
+
+def test_odds_are_a_row_a_cause_the_likeliest_first(documents):
+    (table,) = blocks_of(documents["named"], "table", "odds")
+    assert table.rows[0][2] == "the likeliest"
+    assert "nothing" in [row[0] for row in table.rows]
+    assert {row[1] for row in table.rows} <= {"", "effect", "form from outside"}

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import openpyxl
 import pytest
-from record_files import COUNT, KNET_SCALE, STEP, at2, cosmos, csmip, dyna, knet, rows, series, smc
+from record_files import COUNT, KNET_SCALE, STEP, at2, cosmos, csmip, dyna, knet, series, smc
 
 from blockshake.cli import main
 from blockshake.dynamics.load_motion import load_motion
@@ -72,9 +72,6 @@ def workbook(cells):
 
 
 TABLE = ("--time", "t", "--column", "x=a", "--unit")
-SERIES = ("--time-step", "0.01", "--unit")
-EIGHT = "\n".join(rows([f"{value:10.3f}" for value in CM], 8)) + "\n"
-TOUCHING = "\n".join(rows([fortran(value) for value in CM], 5)) + "\n"
 LATIN = dyna(CM, STATION_NAME="Cefalù, Peloritani").encode("latin-1")
 
 MADE = [
@@ -154,25 +151,6 @@ MADE = [
     Made("t.xlsx", workbook([["t", "a"], *([time, f"{value:.3f}".replace(".", ",")] for time, value in
                                            zip((STEP * np.arange(COUNT)).tolist(), CM, strict=True))]), 0.01 * CM,
          (*TABLE, "cm/s2", "--decimal", ",")),
-    Made("t.txt", "\n".join(f"{value:.3f}" for value in CM), 0.01 * CM, (*SERIES, "cm/s2")),
-    Made("t.txt", EIGHT, 0.01 * CM, (*SERIES, "cm/s2")),
-    Made("t.txt", "Made up 2000\nStep 0.01 s\n" + EIGHT, 0.01 * CM, (*SERIES, "cm/s2")),
-    Made("t.txt", "in units of CM/S2, five a line\n" + "\n".join(rows([f"{value:10.3f}" for value in CM], 5)),
-         0.01 * CM, (*SERIES, "cm/s2")),
-    *(Made("t.txt", f"{line}\n{EIGHT}", 0.01 * CM, (*SERIES, "cm/s2")) for line in (
-        f"NPTS={COUNT} DT=.01SEC", "Sampling rate: 100 Hz", "dt = 10 ms, HP=0.2 Hz LP=33.0 Hz", "PGA = 0.35 g",
-        "Station G", "Depth (m)", "printed as 8 points a line", "Acceleration (Gal)", "1/100 s")),
-    Made("t.txt", "DT= 0,010 s\n" + EIGHT.replace(".", ","), 0.01 * CM, (*SERIES, "gal", "--decimal", ",")),
-    Made("t.csv", table(names=("row", "a"), times=[str(row + 1) for row in range(COUNT)]), 0.01 * CM,
-         (*SERIES, "cm/s2", "--column", "x=a")),
-    Made("t.csv", table(), 0.01 * CM, (*SERIES, "cm/s2", "--column", "x=a")),
-    Made("t.txt", f"{COUNT} {STEP}\n" + EIGHT, 0.01 * CM, (*SERIES, "cm/s2", "--data", "2")),
-    Made("t.txt", TOUCHING, 0.01 * scientific(CM, 6), (*SERIES, "gal")),
-    Made("t.txt", EIGHT.replace(".", ","), 0.01 * CM, (*SERIES, "gal", "--decimal", ",")),
-    Made("t.csv", "\n".join(",".join(f"{value:.3f}" for value in CM[row : row + 4]) for row in range(0, COUNT, 4)),
-         0.01 * CM, (*SERIES, "gal", "--separator", ",")),
-    Made("t.csv", "EW;NS\n" + "\n".join(f"{value:.3f};0" for value in CM), 0.01 * CM,
-         (*SERIES, "gal", "--column", "x=EW")),
     Made("m.csv", "time_s,acceleration_x\n" + "".join(f"{time},{value:.5f}\r\n" for time, value in
                                                       zip(TIMES, 0.01 * CM, strict=True)), 0.01 * CM),
 ]  # fmt: skip
@@ -299,35 +277,6 @@ TABLES = [
     ("t.csv", table(times=[*TIMES[:9], *TIMES[8:-1]]), (*TABLE, "g"), "line 11, t: expected times that increase"),
     ("t.csv", table(times=[*TIMES[:9], *(f"{float(at) + 3.0:.2f}" for at in TIMES[9:])]), (*TABLE, "g"),
      "line 11, t: expected rows 0.01 s apart as elsewhere; 3.01 s after 0.08 s have none, 1 such gaps in all"),
-    ("t.txt", f"{COUNT} {STEP}\n" + EIGHT, (*SERIES, "g"), "line 2: expected 2 values as in line 1, found 8; --data"),
-    ("t.txt", f"{COUNT}\n" + "\n".join(f"{value:.3f}" for value in CM), (*SERIES, "g"), "--data says where"),
-    ("t.txt", table(" ").partition("\n")[2], (*SERIES, "g"), "the first column counts as times do"),
-    ("t.csv", "EW;NS\n" + "\n".join(f"{value:.3f};{-value:.3f}" for value in CM), (*SERIES, "g"),
-     "line 2: expected values of one motion, not columns EW, NS: --column chooses"),
-    ("t.txt", "\n".join(f"{value:.3f} {time}" for value, time in zip(CM, TIMES, strict=True)), (*SERIES, "g"),
-     "column 2 counts as times do"),
-    ("t.txt", "0,998\n1,012\n", (*SERIES, "g"), "line 1: expected numbers with a decimal point"),
-    ("t.txt", "nan\n1.0\n2.0\n", (*SERIES, "g"), "line 1: expected numbers with a decimal point"),
-    ("t.txt", EIGHT + "end\n", (*SERIES, "g"), "line 64: expected numbers"),
-    ("t.txt", EIGHT.replace(f"{CM[9]:10.3f}", f"{-999.0:10.3f}", 1), (*SERIES, "g"), "line 2: expected a value; -999"),
-    ("t.csv", table(), ("--time-step", "0.01", "--time", "t", "--unit", "g"), "--time-step: 0.01: expected alone"),
-    ("t.csv", table(), ("--time-step", "0", "--unit", "g"), "--time-step: 0.0: expected a positive number"),
-    ("t.csv", table(), ("--time-step", "nan", "--unit", "g"), "--time-step: nan: expected a positive number"),
-    ("t.txt", "DT= 0.005 SEC\n" + EIGHT, (*SERIES, "g"), "--time-step: expected 0.005, as the file says, found 0.01"),
-    ("t.txt", "NPTS= 400\n" + EIGHT, (*SERIES, "g"), "number of values: expected 400, as the file says, found 500"),
-    ("t.txt", "acc in units of CM/SEC**2\n" + EIGHT, (*SERIES, "g"), "--unit: expected 'CM/SEC**2', as the file says"),
-    *(("t.txt", f"{line}\n{EIGHT}", (*SERIES, "g"), f"--time-step: expected {step}, as the file says, found 0.01")
-      for line, step in (
-          ("DT=.005SEC", "0.005"), ("DT 5 ms", "0.005"), ("dt (ms): 5", "0.005"), ("DT= 5.0D-3 SEC", "0.005"),
-          ("Sampling rate: 200 Hz", "0.005"), ("Sampling frequency (Hz) = 200", "0.005"), ("FS=200", "0.005"),
-          ("Abtastrate 200 Hz", "0.005"), ("200 Hz", "0.005"), (f"{COUNT} 0.0050 NPTS, DT", "0.005"),
-          ("Sampling interval 0.02 s", "0.02"), ("Time step (s): 0.02", "0.02"), ("delta t = 0.02", "0.02"),
-      )),
-    *(("t.txt", f"{line}\n{EIGHT}", (*SERIES, "g"), "number of values: expected 400, as the file says, found 500")
-      for line in ("Number of points: 400", "400 points", "400 0.0100 NPTS, DT")),
-    *(("t.txt", f"{line}\n{EIGHT}", (*SERIES, "g"), f"--unit: expected '{line}', as the file says")
-      for line in ("Acceleration (cm/s2)", "Acceleration [m/s\u00b2]:", "acc in gal", "cm/s2", "acc, mg")),
-    ("t.txt", f"acceleration, g\n{EIGHT}", (*SERIES, "gal"), "--unit: expected 'acceleration, g', as the file says"),
     *(("t.csv", table(names=("t", name)), ("--time", "t", "--column", f"x={name}", "--unit", "cm/s2"),
        f"column '{name}': expected the unit of acceleration that was given; the header has another one")
       for name in ("acc_g", "acc/g", "acc g", "acc - g", "acc=g", "a{g}", "a<g>", "acc_m/s2", "acc_m_s2", "acc_mps2",
@@ -335,10 +284,8 @@ TABLES = [
     *(("t.csv", table(names=(name, "a")), ("--time", name, "--time-unit", "ms", "--column", "x=a", "--unit", "g"),
        f"column '{name}': expected the unit of time that was given; the header has another one, of time")
       for name in ("t_s", "time_s", "Zeit/s", "t s", "time - min")),
-    ("t.csv", table(), ("--time-step", "0.02", "--column", "x=a", "--unit", "g"),
-     "--time-step: 0.02: expected a table without times; 't' counts as they do: --time and --time-unit"),
-    ("t.csv", table(), ("--time-step", "0.01"), "--unit: expected for a table"),
-    ("t.csv", table(), ("--unit", "g"), "--column: expected for a table, or --time-step"),
+    ("t.csv", table(), ("--time", "t"), "--unit: expected for a table"),
+    ("t.csv", table(), ("--unit", "g"), "--column: expected for a table"),
     ("m.csv", "time_s,acceleration_x\n" + "".join(f"{row / 100 + 3 * (row > 99)},{row % 7}\n" for row in range(200)),
      (),
      "line 102, time_s: expected rows 0.01 s apart as elsewhere; 3.01 s after 0.99 s have none"),

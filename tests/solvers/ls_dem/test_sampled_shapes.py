@@ -87,6 +87,7 @@ def test_a_block_on_a_lattice_sinks_as_the_exact_one_but_for_its_perimeter(
     np.testing.assert_allclose(grid.joint_force[-1, 0], [0.0, 0.0, structure.mass[1] * G], atol=1e-3)
 
 
+@pytest.mark.slow
 def test_a_lattice_shifted_by_half_a_cell_sees_the_same_flats(make_structure, run_ls_dem, monkeypatch):
     """With a spacing below the chamfer only the nodes on the rim notice the lattice's place."""
     structure = make_structure([BODY], shapes=SMALL)

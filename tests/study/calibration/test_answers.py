@@ -99,6 +99,7 @@ def test_the_truth_is_rarely_refused_and_the_parameter_that_acts_is_told_and_not
     assert np.median(widths) < 0.6
 
 
+@pytest.mark.slow
 def test_tests_that_do_not_depend_on_parameters_tell_of_none_of_them():
     """All questions together: a family of 95 % is wrong in one campaign of twenty."""
     generator = np.random.default_rng(5)

@@ -4,13 +4,10 @@ import fake_study
 import numpy as np
 import pytest
 
-from blockshake.files import load_json
 from blockshake.simulation.models import MODELS
 from blockshake.study.comparison.section import case_words, models
 from blockshake.study.comparison.tables import block_tables, other_settings_table, pairs_table
 from blockshake.study.report.content import load_content
-from blockshake.study.report.report import make_report
-from blockshake.study.statements.section import judge_statements
 
 FIRST, LAST = "configuration-1", "configuration-4"
 
@@ -106,18 +103,3 @@ def test_every_departure_has_its_price_by_configuration_in_one_table(printed):
         "LS-DEM as printed: cases in which the limits of a change leave out zero: peak in all 2, residual "
     )
     assert table in section.blocks
-
-
-def test_the_price_goes_to_other_pages_and_the_statements_are_judged_by_the_plain_models(printed, tmp_path):
-    paper = tmp_path / "the-paper.json"
-    make_report(
-        printed.study, printed.results, printed.logs, tmp_path / "one.html", tmp_path / "one.pdf", paper
-    )
-    found = load_json(paper)
-    content = load_content(printed.study, printed.results, printed.logs)
-    table = other_settings_table(content)
-    assert found["other_settings"] == [list(table.header), *map(list, table.rows)]
-    assert found["models"] == ["LS-DEM", "NSCD rigid", "LS-DEM as printed"]
-    plain = {name: one for name, one in printed.study["models"].items() if name != PRINTED}
-    without = load_content({**printed.study, "models": plain}, printed.results, printed.logs)
-    assert judge_statements(content) == judge_statements(without)

@@ -1,4 +1,3 @@
-import json
 import re
 import shutil
 from dataclasses import replace
@@ -8,11 +7,12 @@ import pytest
 import xarray as xr
 from fake_inputs import PEAK_ACCELERATION
 from fake_study import COLLAPSE_REASON, CPU_TIME, MODELS
-from page import CLAIMS, Page, texts
+from page import CLAIMS, Page
 
 from blockshake.errors import InputError
-from blockshake.files import HOME, load_json
+from blockshake.files import HOME
 from blockshake.pages.blocks import Table
+from blockshake.pages.rows import face_markers
 from blockshake.pages.wording import number
 from blockshake.pages.writing import write_html, write_pdf
 from blockshake.study import analyses
@@ -21,8 +21,7 @@ from blockshake.study.report import content
 from blockshake.study.report.content import load_content
 from blockshake.study.report.opening_sections import failures
 from blockshake.study.report.report import compose, make_case_report, make_report
-from blockshake.study.report.result_sections import responses
-from blockshake.study.statements.section import findings
+from blockshake.study.report.result_sections import band_remarks, early_end
 
 
 def test_tags_close_and_ids_are_unique(page):
@@ -97,9 +96,6 @@ def test_samples_that_did_not_complete_are_listed_with_their_reason(text):
     assert f"configuration-4 NSCD rigid 2 collapsed 1 {COLLAPSE_REASON}" in text
     assert "configuration-4 NSCD rigid 4 not-converged" in text
     assert "48 runs: 46 completed, 1 collapsed, 0 still falling when the window ended, 1 failed" in text
-    # six samples, one fell and one failed: histories are of five until the fall
-    assert "NSCD rigid 6 1 1 5 until 1.02 s, then 4 5 4 4 5" in text
-    assert "configuration-1: samples that did not complete" not in text
     assert (
         "How samples end that failed for a numerical reason: configuration-4 by NSCD rigid (1 of 6). No statistic"
         in text
@@ -162,13 +158,6 @@ def test_same_results_same_bytes(document, report, tmp_path):
         assert first.read_bytes() == second.read_bytes()
 
 
-def test_findings_on_the_paper_are_left_as_values(fake, report):
-    left = load_json(report[2])
-    assert left == json.loads(json.dumps(findings(load_content(fake.study, fake.results, fake.logs))))
-    assert left["study"] == "fake"
-    assert "basso-tirreno at 2" in left["cases"][0]
-
-
 def test_complete_study_lists_no_sample(fake):
     study = {**fake.study, "cases": fake.study["cases"][:1]}
     assert [block.kind for block in failures(load_content(study, fake.results, fake.logs))] == ["text"]
@@ -188,14 +177,13 @@ def test_own_structures_by_rigid_models_need_no_contact_stiffness(copied, monkey
         shutil.rmtree(copied.results / name)
     study = {**copied.study, "models": {"nscd-rigid": MODELS["nscd-rigid"]}}
     found = load_content(study, copied.results, copied.logs)
-    assert not {"stiffness", "statements"} & {section.key for section in compose(found).sections}
-    assert findings(found)["findings"] == {}
+    assert "stiffness" not in {section.key for section in compose(found).sections}
 
 
 def test_case_alone_needs_and_tells_nothing_of_the_others(copied, tmp_path):
     fake = copied
     others = fake.results.rglob("configuration-1*")
-    for path in [*others, fake.results / "motions" / "alkion.nc"]:
+    for path in others:
         path.unlink()
     html, pdf = tmp_path / "case.html", tmp_path / "case.pdf"
     make_case_report(fake.study, "configuration-4", fake.results, fake.logs, html, pdf)
@@ -207,7 +195,6 @@ def test_case_alone_needs_and_tells_nothing_of_the_others(copied, tmp_path):
     assert "1 case, 4 models" in said
     assert "blockshake study FILE --case configuration-4" in said
     assert {"answer", "figures", "structures", "responses", "models", "limits", "origin"} <= set(parsed.ids)
-    assert not {"statements"} & set(parsed.ids)
     before = said[: said.index("Configuration used")]
     assert "configuration-1" not in before
 
@@ -216,7 +203,7 @@ def test_missing_results_are_named(copied, tmp_path):
     fake = copied
     missing = fake.results / "envelopes" / "ls-dem" / "configuration-1.nc"
     missing.unlink()
-    made = [tmp_path / f"a.{kind}" for kind in ("html", "pdf", "json")]
+    made = [tmp_path / f"a.{kind}" for kind in ("html", "pdf")]
     with pytest.raises(InputError, match=r"envelopes/ls-dem/configuration-1\.nc"):
         make_report(fake.study, fake.results, fake.logs, *made)
     assert not (tmp_path / "a.html").exists()
@@ -257,23 +244,23 @@ def test_a_study_without_a_calibration_has_no_such_section(fake):
 
 
 def test_bands_that_are_lines_are_counted(fake):
-    content = load_content(fake.study, fake.results, fake.logs)
-    assert not [one for one in texts(responses(content)) if "close to lines" in one]
-    spread = content.cases["configuration-1"].responses["nscd-rigid"].sensitivity["spread"]
+    case = load_content(fake.study, fake.results, fake.logs).cases["configuration-1"]
+    markers = face_markers(case.structure).values()
+    assert not band_remarks(case, markers)
+    spread = case.responses["nscd-rigid"].sensitivity["spread"]
     spread.loc[{"quantity": "history", "marker": "block-1-face"}] = 1e-6
-    (said,) = [one for one in texts(responses(content)) if "close to lines" in one]
+    (said,) = [block.text for block in band_remarks(case, markers)]
     assert said.startswith("NSCD rigid: the samples of 1 of 3 blocks differ by less")
+    assert "close to lines" in said
 
 
 def test_a_window_that_ends_with_the_motion_has_no_remark(fake):
     content = load_content(fake.study, fake.results, fake.logs)
-    remarks = [
-        one for one in texts(responses(content)) if one.startswith("The window ends before the motion")
-    ]
-    assert len(remarks) == len(content.cases)
-    for motion in content.motions.values():
-        motion.attrs["duration"] = 2.0
-    assert not [one for one in texts(responses(content)) if one.startswith("The window ends")]
+    case, (motion,) = content.cases["configuration-1"], content.motions.values()
+    (remark,) = early_end(case, motion)
+    assert remark.text.startswith("The window ends before the motion")
+    motion.attrs["duration"] = 2.0
+    assert early_end(case, motion) == []
 
 
 def test_study_without_measured_tests_tells_of_its_samples_alone(fake):

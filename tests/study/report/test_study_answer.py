@@ -11,7 +11,7 @@ from blockshake.statistics.intervals import share_interval
 from blockshake.study.report.answer import answer
 from blockshake.study.report.case_outcomes import models_apart, most_telling, outcomes, shares_at_impacts
 from blockshake.study.report.content import load_content
-from blockshake.study.report.joint_blocks import joint_blocks
+from blockshake.study.report.joints_table import joints_table
 from blockshake.study.report.open_questions import MOST, unknown
 
 FIRST, FOURTH = "configuration-1", "configuration-4"
@@ -243,11 +243,10 @@ def test_a_study_without_any_result_says_so(content):
     assert list(texts(answer(content)))[-1] == "No sample of any case has a result."
 
 
-def test_joints_of_a_case_are_a_figure_and_a_row_each(content):
-    figure, table = joint_blocks(content.cases[FIRST])
+def test_joints_of_a_case_are_a_row_each(content):
+    (table,) = joints_table(content.cases[FIRST])
     assert [row[0] for row in table.rows] == ["block-2-block-3", "block-1-block-2", "slab-block-1"]
     one = content.cases[FIRST].responses["ls-dem"].envelope.sel(quantile=0.95, joint="slab-block-1")
     shown = table.rows[-1][1].split(" / ")
     wanted = 1e-3 * one["joint_compression"], 1e3 * one["joint_uplift"], 1e3 * one["joint_slip"]
     assert [float(part) for part in shown] == pytest.approx([float(value) for value in wanted], rel=5e-3)
-    assert "<svg" in figure.svg

@@ -7,9 +7,9 @@ import xarray as xr
 from blockshake.geometry.structure import load_structure
 from blockshake.pages.rows import bodies_by_height, face_markers
 from blockshake.study.report.content import load_content
-from blockshake.study.sensitivity.figure import plot_sensitivity, plot_sensitivity_over_time
+from blockshake.study.sensitivity.figure import plot_sensitivity
 from blockshake.study.sensitivity.findings import sentence, shared_words
-from blockshake.study.sensitivity.section import sensitivities, summary_table
+from blockshake.study.sensitivity.section import sensitivities
 from blockshake.study.sensitivity.sensitivity import QUANTITIES
 
 NOISE = 1e-4  # m
@@ -24,8 +24,6 @@ def made_up(share=0.6, correlation=-0.7, spread=0.01, level=0.3, shared=0.01):
     first[..., 0], rank[..., 0] = share, correlation
     rank[0] = np.nan
     levels = np.full(len(QUANTITIES), level)
-    windows = np.zeros((3, 2, 2))
-    windows[0, :, 0] = share
     result = xr.Dataset(
         {
             "first_order": (pairs, first),
@@ -39,13 +37,10 @@ def made_up(share=0.6, correlation=-0.7, spread=0.01, level=0.3, shared=0.01):
             "used": ("quantity", np.full(len(QUANTITIES), 50)),
             "correlation": (("parameter", "other"), [[1.0, shared], [shared, 1.0]]),
             "control": ("parameter", [0, 1]),
-            "window_first_order": (("window", "marker", "parameter"), windows),
-            "window_spread": (("window", "marker"), np.full((3, 2), spread)),
-            "window_first_order_chance": ((), level),
         },
         coords={
             "quantity": list(QUANTITIES), "marker": ["low-face", "high-face"], "parameter": [FRICTION, VISCOUS],
-            "bound": ["lower", "upper"], "window": [0.5, 1.5, 2.5],
+            "bound": ["lower", "upper"],
         },
     )  # fmt: skip
     return result
@@ -93,21 +88,6 @@ def test_figure_shows_every_variable_with_interval_and_level():
     assert plot_sensitivity(quiet, {"low": "low-face"}, NOISE, "first_order") is None
 
 
-def test_curves_over_time_are_the_files_and_stop_below_the_noise():
-    result = made_up()
-    result["window_spread"][2] = 1e-5
-    below = plot_sensitivity_over_time({"ls-dem": result}, "high-face", NOISE).axes[1]
-    curve = next(line for line in below.lines if line.get_label().startswith("friction"))
-    np.testing.assert_array_equal(curve.get_ydata(), [0.6, 0.0, np.nan])
-    assert not [line for line in below.lines if "viscous" in line.get_label()]
-
-
-def test_too_few_samples_are_not_called_close_to_each_other():
-    result = made_up(spread=np.nan)
-    below = plot_sensitivity_over_time({"nscd-rigid": result}, "high-face", NOISE).axes[1]
-    assert [text.get_text() for text in below.texts] == ["too few samples"]
-
-
 @pytest.mark.parametrize(
     ("shared", "words"),
     [
@@ -139,15 +119,3 @@ def test_columns_are_one_body_of_each_height_from_the_lowest():
     bodies = bodies_by_height(structure, face_markers(structure))
     assert bodies == ["wall-a-1", "wall-a-2", "wall-a-3", "wall-a-4", "top"]
     assert bodies_by_height(structure, face_markers(structure), most=3) == ["wall-a-1", "wall-a-3", "top"]
-
-
-def test_summary_has_the_lowest_and_the_highest_block_of_every_case_and_model(fake):
-    content = load_content(fake.study, fake.results, fake.logs)
-    table = summary_table(content)
-    assert [row[:3] for row in table.rows[:2]] == [
-        ("configuration-1", "LS-DEM", f"block-{place}") for place in (1, 3)
-    ]
-    # six samples of configuration-4 by NSCD, one of them failed and one collapsed, are too few for anything
-    assert {row[4:] for row in table.rows if row[:2] == ("configuration-4", "NSCD rigid")} == {
-        ("none", "none")
-    }

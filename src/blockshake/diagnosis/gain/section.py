@@ -6,7 +6,7 @@ from blockshake.diagnosis.misfit.figure import add_legend, draw_history
 from blockshake.diagnosis.wording import percent_words
 from blockshake.pages.blocks import Figure, Section, Table, Text
 from blockshake.pages.drawing import BLUE, ORANGE, new_figure, svg_of
-from blockshake.pages.wording import MISSING, model_label, number, sentence_case
+from blockshake.pages.wording import MISSING, number, sentence_case
 
 _RIVALS = {
     "nominal": "the nominal model",
@@ -52,7 +52,7 @@ def gain_section(diagnosed):
     if gain is not None and "where" in gain.attrs:
         blocks.append(_of_sensor(gain))
     elif gain is not None:
-        blocks += [_solvers(gain), _largest(diagnosed), _drift(diagnosed)]
+        blocks += [_largest(diagnosed), _drift(diagnosed)]
     return Section(title, "gain", tuple(blocks))
 
 
@@ -75,30 +75,6 @@ def _gains(verdict):
         tuple(rows),
         "l" + "r" * len(columns),
     )
-
-
-def _solvers(gain):
-    kinds = [str(kind) for kind in gain["kind"].values]
-    rows = [
-        (
-            model_label(str(model)),
-            *(number(gain["score_of_solver"].sel(model=model, kind=kind)) for kind in kinds),
-        )
-        for model in gain["model"].values
-    ]
-    rows.append(("all together", *(number(gain["score"].sel(kind=kind)) for kind in kinds)))
-    return Table(
-        "Scores by solver: continuous ranked probability score of the responses in units of their spread, lower "
-        f"is better. A record that the extended model had made itself would score {number(gain['floor'])} in the "
-        "mean.",
-        ("Solver", *(_kind(kind) for kind in kinds)),
-        tuple(rows),
-        "l" + "r" * len(kinds),
-    )
-
-
-def _kind(kind):
-    return _KINDS.get(kind, kind.capitalize())
 
 
 def _largest(diagnosed):

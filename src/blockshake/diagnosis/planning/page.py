@@ -53,13 +53,13 @@ def _cell(name, one, rival):
 
 
 def addition_rows(additions):
-    """Header and rows of the additions, the one that is worth most for its cost first."""
-    rows = [("one measurement more", "pairs", "cost", "separates above all")]
+    """Header and rows of the additions, the one that separates most pairs first."""
+    rows = [("one measurement more", "pairs", "separates above all")]
     for one in additions:
         pairs = [
             f"{name_of(name)} from {name_of(rival) if rival else 'nothing'}" for name, rival in one.separates
         ]
-        rows.append((one.words, number(one.pairs, 2), number(one.cost), "; ".join(pairs[:_SHOWN])))
+        rows.append((one.words, number(one.pairs, 2), "; ".join(pairs[:_SHOWN])))
     return rows
 
 
@@ -89,13 +89,13 @@ def _document(asked, told, additions):
     )
     head, *ranked = addition_rows(additions)
     more = Table(
-        f"One measurement more, ranked by the pairs that it separates for its cost. Pairs: sum over effects of their "
+        f"One measurement more, ranked by the pairs that it separates. Pairs: sum over effects of their "
         f"visible size and all rivals of the chance more to tell them apart, mean of {OF_ADDITIONS} nominal campaigns. "
         "Static tests tell of the effect where the tests tell least of it.",
         tuple(sentence_case(words)[:-1] for words in head),
         tuple(ranked),
-        "lrrl",
-        (0.4, 0.1, 0.1, 0.4),
+        "lrl",
+        (0.4, 0.1, 0.5),
     )
     sections = (
         Section("Effects that are seen and told apart", "matrix", matrix),

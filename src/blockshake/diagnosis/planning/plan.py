@@ -9,30 +9,12 @@ from blockshake.diagnosis.answer.static_tests import static_tests
 from blockshake.diagnosis.planning.separation import NominalCampaign
 from blockshake.effects.registry import EFFECTS
 from blockshake.errors import InputError
-from blockshake.files import load_yaml
-from blockshake.validation import Positive, Strict, validated
 
 CAMPAIGNS, OF_ADDITIONS = 4, 2  # nominal campaigns: of the plan, and of one measurement more
 _GRID = np.geomspace(1e-4, 1.0, 200)  # of the end of the prior, at which the chance to be seen is computed
 _SIZES = (1.0, 1.6, 2.5, 4.0, 8.0)  # over the limit, at which an effect is held against its rivals
 _STRONGER = 1.25
 _SEPARATED = 0.5  # chance more, from which an addition is said to separate a pair
-
-
-class Costs(Strict):
-    """Costs of one measurement more, over that of a shake; a laboratory has its own."""
-
-    shake: Positive = 1.0
-    sensor: Positive = 0.5
-    weighing: Positive = 1.0
-    slow_tilt: Positive = 1.5
-    snap_release: Positive = 1.0
-    jack: Positive = 1.0
-
-
-def load_costs(path):
-    """`Costs` of a YAML file, or the defaults; what the file leaves out has its default."""
-    return validated(Costs, load_yaml(path), path) if path else Costs()
 
 
 class Told(NamedTuple):
@@ -54,24 +36,22 @@ class Told(NamedTuple):
 
 
 class Addition(NamedTuple):
-    """One measurement more: its words and cost, the pairs of effect and rival that it separates, and which above all.
+    """One measurement more: its words, the pairs of effect and rival that it separates, and which above all.
 
     ``pairs`` is the sum of the chances more, of effects of their visible size; the rival None is to be seen at all.
     """
 
     words: str
-    cost: float
     pairs: float
     separates: tuple
 
 
-def plan_campaign(asked, costs, progress):
-    """`Told` by effect, and `Addition` by falling worth for their costs.
+def plan_campaign(asked, progress):
+    """`Told` by effect, and `Addition` by falling number of pairs.
 
     Parameters
     ----------
     asked : Asked
-    costs : Costs
     progress : callable
         Called with a line of text as the plan goes on.
 
@@ -99,27 +79,24 @@ def plan_campaign(asked, costs, progress):
     few, readings = campaigns[:OF_ADDITIONS], readings[:OF_ADDITIONS]
     before, additions = _of_visible(few, told), []
 
-    def add(kind, words, after):
-        cost = getattr(costs, kind.replace(" ", "_"))
+    def add(words, after):
         gained = {pair: chance - before.get(pair, 0.0) for pair, chance in after.items()}
         most = sorted((pair for pair in gained if gained[pair] > _SEPARATED), key=lambda pair: -gained[pair])
-        additions.append(Addition(words, cost, sum(gained.values()), tuple(most)))
+        additions.append(Addition(words, sum(gained.values()), tuple(most)))
 
     for static in static_tests(few[0].seen[0]):
-        add(static.kind, static.words, _of_visible(few, told, static))
+        add(static.words, _of_visible(few, told, static))
     for words, names in asked.more.items():
         progress(words)
-        add("sensor", words, _of_visible([_campaign(asked, one, names) for one in readings], told))
+        add(words, _of_visible([_campaign(asked, one, names) for one in readings], told))
     for test in tests:
-        for factor, words in ((1.0, f"{test} once more"), (_STRONGER, f"{test} times {_STRONGER:g}")):
-            progress(words)
-            draws = range(CAMPAIGNS * len(tests), CAMPAIGNS * len(tests) + OF_ADDITIONS)
-            more = [asked.simulated(test, draw, factor) for draw in draws]
-            longer = [
-                _campaign(asked, {**one, words: test}) for one, test in zip(readings, more, strict=True)
-            ]
-            add("shake", words, _of_visible(longer, told))
-    return told, sorted(additions, key=lambda one: (-one.pairs / one.cost, one.words))
+        words = f"{test} times {_STRONGER:g}"
+        progress(words)
+        draws = range(CAMPAIGNS * len(tests), CAMPAIGNS * len(tests) + OF_ADDITIONS)
+        more = [asked.simulated(test, draw, _STRONGER) for draw in draws]
+        longer = [_campaign(asked, {**one, words: test}) for one, test in zip(readings, more, strict=True)]
+        add(words, _of_visible(longer, told))
+    return told, sorted(additions, key=lambda one: (-one.pairs, one.words))
 
 
 def _campaign(asked, readings, more=frozenset()):

@@ -4,13 +4,11 @@ from blockshake.diagnosis.wording import (
     estimate_words,
     place_words,
     range_words,
-    shown_unit,
     size_words,
     when_words,
 )
 from blockshake.effects.registry import EFFECTS
-from blockshake.pages.blocks import Figure, Items, Section, Table
-from blockshake.pages.drawing import BLACK, BLUE, DARK_GREY, LIGHT_GREY, SKY, new_figure, svg_of
+from blockshake.pages.blocks import Items, Section, Table
 
 _WHERE = {
     "input": "on the table's motion",
@@ -19,7 +17,6 @@ _WHERE = {
     "force": "as a force on a block",
     "observation": "in the sensors alone",
 }
-_ROOM = 0.04  # of the range, beyond either end
 
 
 def size_section(diagnosed):
@@ -27,17 +24,7 @@ def size_section(diagnosed):
     causes = [one for part in diagnosed.decision.parts for one in part.causes]
     if not causes:
         return None
-    blocks = [_table(causes)]
-    effects = [one for one in causes if not one.outside]
-    if effects:
-        blocks.append(
-            Figure(
-                "Sizes on the ranges of the registry (grey): likeliest (dot) and its interval of 90 % (blue); "
-                "without the cause (dashed); the draws by which the model is extended (ticks).",
-                svg_of(plot_sizes, effects),
-            )
-        )
-    return Section("Size of what acts", "size", (*blocks, Items(tuple(map(_described, causes)))))
+    return Section("Size of what acts", "size", (_table(causes), Items(tuple(map(_described, causes)))))
 
 
 def _described(cause):
@@ -76,27 +63,3 @@ def meaning_words(parameter):
     """Name and meaning of an `EffectParameter`: ``offset of the mass centre along x``."""
     joint = " " if parameter.meaning.startswith(("of ", "on ")) else ": "
     return f"{parameter.name}{joint}{parameter.meaning}"
-
-
-def plot_sizes(causes):
-    """Figure of the parameters of every `Cause` of the registry, a strip each."""
-    strips = [(cause, parameter) for cause in causes for parameter in EFFECTS[cause.name].parameters]
-    figure = new_figure(0.003 + 0.0135 * len(strips))
-    panels = figure.subplots(len(strips), 1, squeeze=False)[:, 0]
-    for axes, (cause, known) in zip(panels, strips, strict=True):
-        factor, unit = shown_unit(known.unit)
-        estimate = cause.parameters[known.name]
-        low, high = min(known.lower, estimate.lower), max(known.upper, estimate.upper)
-        axes.axvspan(factor * known.lower, factor * known.upper, color=LIGHT_GREY, linewidth=0.0)
-        axes.axvspan(factor * estimate.lower, factor * estimate.upper, color=SKY, alpha=0.6, linewidth=0.0)
-        if known.name == next(iter(cause.parameters)):
-            axes.axvline(factor * known.null, color=DARK_GREY, linestyle="--", linewidth=0.8)
-        members = [factor * member[known.name] for member in cause.members if known.name in member]
-        axes.plot(members, [0.25] * len(members), "|", color=BLACK, markersize=6.0, markeredgewidth=0.5)
-        axes.plot(factor * estimate.estimate, 0.65, "o", color=BLUE, markersize=5.0)
-        axes.set_xlim(factor * (low - _ROOM * (high - low)), factor * (high + _ROOM * (high - low)))
-        axes.set_ylim(0.0, 1.0)
-        axes.set_yticks([])
-        axes.grid(False)
-        axes.set_xlabel(f"{known.name} [{unit}], {cause.title}")
-    return figure

@@ -157,7 +157,8 @@ def _series(cells, count, where, count_key):
     if count < 2:
         raise InputError(where, count_key, f"expected at least two values, found {count}")
     digits = [len(text.partition(".")[2]) for text, _ in cells]
-    short = [cell for cell, behind in zip(cells, digits, strict=True) if behind < max(digits)]
+    most = max(digits)
+    short = [cell for cell, behind in zip(cells, digits, strict=True) if behind < most]
     if 0 < len(short) <= max(1, _FEW * len(cells)):  # 1.23E-0 for 1.23E-05
         text, line = short[0]
         raise InputError(

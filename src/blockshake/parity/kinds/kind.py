@@ -34,13 +34,11 @@ class Kind(NamedTuple):
     units: tuple = ("1", "1")
     size: int | None = 0
 
-    def finding(self, where, p, tests, estimate=(), covariance=None, rivals=()):
+    def finding(self, where, p, tests, estimate=(), covariance=None):
         """`Finding` of this kind; without an estimate where nothing is to be estimated. p is 1 at most."""
         estimate = np.asarray(estimate, dtype=float)
         covariance = np.zeros((len(estimate),) * 2) if covariance is None else covariance
-        return Finding(
-            self.effect, where, self.quantity, estimate, covariance, min(p, 1.0), tuple(tests), rivals
-        )
+        return Finding(self.effect, where, self.quantity, estimate, covariance, min(p, 1.0), tuple(tests))
 
 
 class Column(NamedTuple):

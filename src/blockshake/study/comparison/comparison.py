@@ -10,12 +10,7 @@ from blockshake.measurement.motion.compared_curves import curves_along_x
 from blockshake.measurement.sensors import markers
 from blockshake.simulation.models import solver_of
 from blockshake.statistics.intervals import SURE_FROM, quantile_interval, sample_quantiles
-from blockshake.statistics.resampling import (
-    bootstrap_interval,
-    chance_distance,
-    limits_of,
-    resampled_weights,
-)
+from blockshake.statistics.resampling import chance_distance, limits_of, resampled_weights
 from blockshake.statistics.scores import (
     FEWEST,
     ensemble_distance,
@@ -33,12 +28,10 @@ MOST = 400  # samples of a model that are compared: each is held against each
 TOLD_APART_BY = 3.0  # standard deviations of a marker's noise that curves are apart when they have parted
 CHANGES = ("peak", "residual", "width")  # of a solver with other settings, told from the same samples
 _MIDDLE = [0.5]
-_ENDS = (0.05, 0.95)  # quantiles between which a range lies
 _DESCRIBED = {
     "counted": ("samples that enter statistics", "1"),
     "peak": ("median of the largest displacement along x relative to the slab", "m"),
     "residual": ("median of the displacement along x relative to the slab at the end", "m"),
-    "residual_range": ("from the 5 % to the 95 % quantile of the residual", "m"),
     "width": ("mean absolute difference of two samples relative to the slab", "m"),
     "peak_change": ("peak minus that of the model of the solver's plain name, median of the pairs", "m"),
     "residual_change": ("residual minus that of the model of the plain name, median of the pairs", "m"),
@@ -52,7 +45,6 @@ _DESCRIBED = {
     "floor": ("mean difference of a sample from its twin", "m"),
     "horizon": ("first time that a sample differs from its twin", "s"),
     "score": ("continuous ranked probability score against the measured curves", "m"),
-    "score_difference": ("score of the other model minus that of the model", "m"),
 }
 
 
@@ -96,16 +88,15 @@ def compare_models(ensembles, twins, measured):
     -------
     xarray.Dataset
         Displacements are along x relative to the slab's marker [m]; markers are those of the blocks. Of one model:
-        ``counted(model)``; medians ``peak`` and ``residual(model, marker)``; ``residual_range(model, marker)``, from
-        its 5 % to its 95 % quantile; and ``width(model, marker)``, the mean absolute difference of two samples. Of a
-        model with settings of its own, against that of its solver's name alone, over the ``changed(model)`` samples of
-        both: ``peak_change``, ``residual_change`` and ``width_change(model, marker)``, NaN for all others. Of two
+        ``counted(model)``; medians ``peak`` and ``residual(model, marker)``; and ``width(model, marker)``, the mean
+        absolute difference of two samples. Of a model with settings of its own, against that of its solver's name
+        alone, over the ``changed(model)`` samples of both: ``peak_change``, ``residual_change`` and
+        ``width_change(model, marker)``, NaN for all others. Of two
         models, ``other`` the second: ``distance``, the energy distance of the ensembles, with ``distance_chance``;
         ``history_difference`` and ``parting_time`` of the ``common`` samples. Of the numerics, NaN without twins:
-        ``floor`` and ``horizon(model, twin)``. Against the measured curves, NaN without any: ``score(model)`` and
-        ``score_difference(model, other)``. Limits of 95 %, ``NAME_interval(bound, ...)``: of medians by order
-        statistics, of range, width and scores by bootstrap. NaN where an ensemble has fewer than three samples, of a
-        range six; times infinite where nothing parts.
+        ``floor`` and ``horizon(model, twin)``. Against the measured curves, NaN without any: ``score(model)``. Limits
+        of 95 %, ``NAME_interval(bound, ...)``: of medians by order statistics, of width and score by bootstrap. NaN
+        where an ensemble has fewer than three samples; times infinite where nothing parts.
     """
     models = list(ensembles)
     counted = {model: counted_samples(one) for model, one in ensembles.items()}
@@ -169,27 +160,15 @@ def _alone(counted, seed):
             values = ensemble[name].sel(frame="slab", marker=blocks).transpose("sample", "marker").to_numpy()
             one[name] = ("marker", sample_quantiles(values, _MIDDLE)[0])
             one[f"{name}_interval"] = (("bound", "marker"), quantile_interval(values, _MIDDLE)[:, 0])
-        width, extent = np.full((2, len(blocks)), np.nan)
-        width_limits, extent_limits = np.full((2, 2, len(blocks)), np.nan)
-        residuals = values[np.isfinite(values).all(axis=1)]
-        if len(residuals) >= SURE_FROM:
-            extent = _extent(residuals)
-            extent_limits = bootstrap_interval(_extent, [residuals], _generator(seed, "residual", model))
+        width, width_limits = np.full(len(blocks), np.nan), np.full((2, len(blocks)), np.nan)
         if size >= FEWEST:
             curves = _curves(ensemble)
             weights = resampled_weights(size, _generator(seed, model))
             width, *resampled = mean_width(mean_differences(curves, curves), weights)
             width_limits = limits_of(np.array(resampled)) if size >= SURE_FROM else width_limits
-        one |= {"width": ("marker", width), "residual_range": ("marker", extent)}
-        one["width_interval"] = (("bound", "marker"), width_limits)
-        one["residual_range_interval"] = (("bound", "marker"), extent_limits)
+        one |= {"width": ("marker", width), "width_interval": (("bound", "marker"), width_limits)}
         parts.append(xr.Dataset(one, {"marker": blocks, "bound": ["lower", "upper"]}))
     return xr.concat(parts, dim=xr.Variable("model", list(counted)))
-
-
-def _extent(values):
-    """Distance of the 5 % from the 95 % quantile over the first axis."""
-    return np.diff(sample_quantiles(values, _ENDS), axis=0)[0]
 
 
 def _changes(counted, seed):
@@ -302,35 +281,17 @@ def score_parts(ensemble, measured):
 
 
 def _scores(counted, measured, seed):
-    """Scores against the measured curves, and how they differ from model to model."""
-    models = list(counted)
-    drawn = {}
-    for model, ensemble in counted.items():
+    """Scores against the measured curves."""
+    score, interval = np.full(len(counted), np.nan), np.full((2, len(counted)), np.nan)
+    for row, (model, ensemble) in enumerate(counted.items()):
         size = ensemble.sizes["sample"]
         if measured is None or size < FEWEST:
             continue
         weights = resampled_weights(size, _generator(seed, "score", model))
-        drawn[model] = ensemble_score(*score_parts(ensemble, measured), weights)
-    shape = (len(models), len(models))
-    score, interval = np.full(len(models), np.nan), np.full((2, len(models)), np.nan)
-    difference, difference_interval = np.full(shape, np.nan), np.full((2, *shape), np.nan)
-    for row, model in enumerate(models):
-        if model not in drawn:
-            continue
-        score[row] = drawn[model][0]
-        if counted[model].sizes["sample"] >= SURE_FROM:
-            interval[:, row] = limits_of(drawn[model][1:])
-        for column, other in enumerate(models):
-            if other in drawn and other != model:
-                excess = drawn[other] - drawn[model]
-                difference[row, column] = excess[0]
-                difference_interval[:, row, column] = limits_of(excess[1:])
+        score[row], *resampled = ensemble_score(*score_parts(ensemble, measured), weights)
+        if size >= SURE_FROM:
+            interval[:, row] = limits_of(np.array(resampled))
     return xr.Dataset(
-        {
-            "score": ("model", score),
-            "score_interval": (("bound", "model"), interval),
-            "score_difference": (("model", "other"), difference),
-            "score_difference_interval": (("bound", "model", "other"), difference_interval),
-        },
-        {"model": models, "other": models, "bound": ["lower", "upper"]},
+        {"score": ("model", score), "score_interval": (("bound", "model"), interval)},
+        {"model": list(counted), "bound": ["lower", "upper"]},
     )

@@ -21,8 +21,8 @@ _WORDS = {
 
 
 def extension(content):
-    """Changes by a cause; None where no case has one more than another."""
-    if not content.changes:
+    """Changes by a cause, which are those of pairs of cases; None where no case has one more than another."""
+    if content.only or not content.changes:
         return None
     pairs = content.study["extension"]["cases"]
     blocks = [

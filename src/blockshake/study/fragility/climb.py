@@ -3,11 +3,13 @@
 import numpy as np
 import xarray as xr
 
-from blockshake.dynamics.system import FINISHED
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.system import FINISHED, Status
 from blockshake.geometry.reference_block import half_width
 from blockshake.geometry.structure import load_structure
+from blockshake.simulation.simulate import simulate
+from blockshake.store import structure_digest
 from blockshake.study.ensembles.ensemble import describe
-from blockshake.study.ensembles.ladder import climb
 
 _DESCRIBED = {
     "scale": ("factor of the motion", "1"),
@@ -51,6 +53,60 @@ def climb_samples(runs, rows, ladder, store):
     return gathered(
         rows.index.to_numpy(), climbs, ladder.scales, ladder.largest_drift or half_width(structure)
     )
+
+
+def climb(structure, runs, parameters, ladder, store):
+    """Simulate one structure at growing intensities, each from the restored stack.
+
+    Parameters
+    ----------
+    structure : Structure
+    runs : CaseRuns
+        With ``motion`` and ``baseline`` of the case, and its duration.
+    parameters : dict
+        Parameters of the run by dotted name, as `simulate` takes them.
+    ladder : Ladder
+        First scale, increment, highest scale and the drift that counts as a potential collapse: that of `half_width`
+        where it says none.
+    store : Store
+
+    Returns
+    -------
+    list of dict
+        By rung: ``scale``, ``status``, ``reason`` and ``peak``, the largest displacement of any
+        block relative to the slab along x [m]; and ``passed``. The last rung is the first that did not
+        pass: it did not complete, or a block's drift exceeded ``largest_drift``.
+
+    Notes
+    -----
+    Zhou et al. (2023), section Case Study: first test at 50 %, increments of about 25 %.
+    """
+    rungs, largest_drift = [], ladder.largest_drift or half_width(structure)
+    for scale in ladder.scales.tolist():
+        outcome = _rung(structure, runs, parameters, scale, store)
+        passed = outcome["status"] == Status.COMPLETED and outcome["peak"] <= largest_drift
+        rungs.append({"scale": scale, **outcome, "passed": passed})
+        if not passed:
+            break
+    return rungs
+
+
+def _rung(structure, runs, parameters, scale, store):
+    """How one run ended, and the largest drift in it [m]."""
+    motion = load_motion(runs.case["motion"], scale, runs.case["baseline"])
+    time_step, duration = runs.settings["time_step"], runs.case["duration"]
+
+    def simulated(checkpoint):
+        run = simulate(
+            structure, motion, runs.model, parameters, time_step=time_step, duration=duration, accelerometers=False,
+            checkpoint=checkpoint,
+        )  # fmt: skip
+        moved = run["position"].sel(axis="x") - run["position"].sel(axis="x").isel(time=0)
+        drift = np.abs(moved - moved.isel(body=0)).max()
+        return {"status": run.attrs["status"], "reason": run.attrs["reason"], "peak": float(drift)}
+
+    given = "rung", runs.model, structure_digest(structure), *motion.table, parameters, time_step, duration
+    return store.value(given, simulated)
 
 
 def _words(rungs):

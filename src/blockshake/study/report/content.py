@@ -180,9 +180,8 @@ def load_content(study, results, logs, only=None):
     read = {one.name: one.results(study, results, only) for one in ANALYSES}
     loaded = {name: _case(study, read, name, settings) for name, settings in cases.items()}
     motions = {}
-    climbed = [] if only else study["ladder"]["motions"]
-    for named in [*(case["motion"] for case in cases.values()), *climbed]:
-        motions[Path(named).stem] = load_made(results / "motions" / f"{Path(named).stem}.nc")
+    for name in dict.fromkeys(Path(case["motion"]).stem for case in cases.values()):
+        motions[name] = load_made(results / "motions" / f"{name}.nc")
     design = results / "design.csv"
     stiffness = [results / "stiffness" / f"{name}.csv" for name, _ in read["stiffness"]]
     inputs = [

@@ -1,6 +1,5 @@
 """The report of a study, or of one of its cases: one page and one PDF from the same content."""
 
-from blockshake.files import write_json
 from blockshake.pages.blocks import Document, numbered
 from blockshake.pages.writing import write_html, write_pdf
 from blockshake.study.calibration.section import calibration
@@ -14,7 +13,6 @@ from blockshake.study.report.opening_sections import figures, motions, structure
 from blockshake.study.report.result_sections import responses
 from blockshake.study.sampling.section import samples
 from blockshake.study.sensitivity.section import sensitivities
-from blockshake.study.statements.section import findings
 from blockshake.study.stiffness.section import stiffness
 
 _SECTIONS = (
@@ -35,7 +33,7 @@ _SECTIONS = (
 )
 
 
-def make_report(study, results, logs, html, pdf, paper):
+def make_report(study, results, logs, html, pdf):
     """Write the report of a finished study.
 
     Parameters
@@ -46,19 +44,15 @@ def make_report(study, results, logs, html, pdf, paper):
         Folders of its results and of its jobs' logs.
     html, pdf : str or path
         To write, each whole or not at all. Same results, same bytes.
-    paper : str or path
-        JSON of the findings on the statements of the paper, to write likewise.
 
     Raises
     ------
     InputError
         A results file is missing or holds something else.
     """
-    content = load_content(study, results, logs)
-    document = compose(content)
+    document = compose(load_content(study, results, logs))
     write_html(html, document)
     write_pdf(pdf, document)
-    write_json(paper, findings(content))
 
 
 def make_case_report(study, case, results, logs, html, pdf):
@@ -79,11 +73,6 @@ def compose(content):
                 for name in ("project", "author", "date")
                 if content.study.get(name)
             ),
-            sections=tuple(
-                made
-                for section in _SECTIONS
-                # the changes by a cause are those of a pair of cases
-                if not (content.only and section is extension) and (made := section(content)) is not None
-            ),
+            sections=tuple(made for section in _SECTIONS if (made := section(content)) is not None),
         )
     )

@@ -16,9 +16,7 @@ from blockshake.pages.wording import (
 )
 from blockshake.study.comparison.tables import block_tables
 from blockshake.study.ensembles.displacement_figure import interactive_displacements, plot_displacements
-from blockshake.study.ensembles.envelope import counted_samples
-from blockshake.study.ensembles.outcomes import count_outcomes, shortfall
-from blockshake.study.report.joint_blocks import joint_blocks
+from blockshake.study.report.joints_table import joints_table
 from blockshake.study.report.moving import moving_samples, plot_still, usual_magnification
 from blockshake.study.sensitivity.findings import quiet_markers
 
@@ -58,13 +56,12 @@ def _response(case, motion):
             f"{case.motion}, scale {given(case.settings['scale'])}, first {given(case.settings['duration'])} s."
             + _noise(case)
         ),
-        *_early_end(case, motion),
-        *([unfinished] if (unfinished := unfinished_table(case)) else []),
-        *_lines(case, markers.values()),
+        *early_end(case, motion),
+        *band_remarks(case, markers.values()),
         figure("slab", f"{case.name}: displacement relative to the slab's marker, {every}."),
         *_moving(case),
         *block_tables(case),
-        *joint_blocks(case),
+        *joints_table(case),
         *([] if case.measured is None else [figure("inertial", beside), coverage_table(case)]),
     ]
 
@@ -96,7 +93,7 @@ def _noise(case):
     return f" Marker noise of the {word}: {given(1e3 * case.marker_noise)} mm (standard deviation)."
 
 
-def _early_end(case, motion):
+def early_end(case, motion):
     """A remark where the window ends within the motion."""
     if case.settings["duration"] >= motion.attrs["duration"]:
         return []
@@ -109,36 +106,7 @@ def _early_end(case, motion):
     ]
 
 
-def unfinished_table(case):
-    """Samples that each statistic rests on, by model; None where every sample completed."""
-    rows = []
-    for model, one in case.responses.items():
-        samples, missing = one.samples, shortfall(one.envelope)
-        ended = count_outcomes(samples["status"])
-        if ended.completed == sum(ended):
-            continue
-        until = f" until {number(missing.since)} s, then {missing.at_end}" * bool(np.isfinite(missing.since))
-        residuals = np.isfinite(counted_samples(samples)["residual"]).all(("frame", "marker")).sum()
-        used = one.sensitivity["used"].sel(quantity=["history", "peak"])
-        fell, counted = ended.collapsed + ended.falling, missing.counted
-        numbers = sum(ended), fell, ended.failed, f"{counted}{until}", counted, int(residuals), *used.values
-        rows.append((model_label(model), *map(str, numbers)))
-    if not rows:
-        return None
-    return Table(
-        f"{case.name}: samples that did not complete, and how many each statistic rests on. A sample that fell, by a "
-        "collapse or as the window ended, is in bounds, quantiles, widths, coverage, distances and scores (histories) "
-        "until its end. It counts as a collapse, and as beyond the drift, in all probabilities. Its peak and its "
-        "rotation are what it had reached, lower limits, and its peak ranks first in the sensitivity. It has no "
-        "residual, and is not in the sensitivity of the history. A sample that failed is in none of these; the limits "
-        "of probabilities hold the case that all of them fell and the case that none did.",
-        ("Model", "Runs", "Fell", "Failed", "Histories", "Peaks", "Residuals", "History index", "Peak index"),
-        tuple(rows),
-        "lrrrrrrrr",
-    )
-
-
-def _lines(case, markers):
+def band_remarks(case, markers):
     """A remark on each model whose samples are nearly one and the same run, or one only."""
     texts = []
     for model, one in case.responses.items():

@@ -2,20 +2,7 @@
 
 import numpy as np
 
-from blockshake.pages.drawing import (
-    BLACK,
-    BLUE,
-    DARK_GREY,
-    GREEN,
-    GREY,
-    LIGHT_GREY,
-    ORANGE,
-    PURPLE,
-    RED,
-    SKY,
-    new_figure,
-)
-from blockshake.pages.units import FINEST
+from blockshake.pages.drawing import BLUE, DARK_GREY, LIGHT_GREY, RED, new_figure
 from blockshake.pages.wording import model_label, number, parameter_label
 from blockshake.study.sensitivity.findings import differs, is_known
 
@@ -24,8 +11,6 @@ SHOWN = {
     "rank_correlation": ("peak", "partial rank correlation with the peak [1]", (-1.05, 1.05), (-0.5, 0.5)),
 }
 _COLORS = {"first_order": BLUE, "rank_correlation": RED}
-# by index of the variable, so that it has the same colour in every case
-_LINES = (BLUE, ORANGE, SKY, GREEN, RED, GREY, PURPLE, BLACK, DARK_GREY)
 _ROW = 0.003  # m of paper, of one variable
 
 
@@ -79,41 +64,6 @@ def is_shown(result, markers, measure, noise):
     """Whether a measure of a model is drawn for any of the markers: samples differ and suffice."""
     one = result.sel(quantity=SHOWN[measure][0], marker=list(markers))
     return differs(one, noise) and is_known(one, measure)
-
-
-def plot_sensitivity_over_time(sensitivities, marker, noise):
-    """Figure of the top block's spread second by second, and of the share of it that each variable explains, by model.
-
-    Above: standard deviation over the samples [mm], dashed the marker's noise [m]. Below: first-order shares of the
-    variables of use; seconds in which samples differ by less than the noise have none.
-    """
-    figure = new_figure(0.088)
-    panels = figure.subplots(2, len(sensitivities), sharex=True, sharey="row", squeeze=False)
-    used = ~np.all([result["control"] for result in sensitivities.values()], axis=0)
-    for (above, below), (model, result) in zip(panels.T, sensitivities.items(), strict=True):
-        at = result.sel(marker=marker)
-        spread, share = at["window_spread"], at["window_first_order"]
-        above.semilogy(result["window"], 1e3 * spread, color=BLACK, marker=".", markersize=3)
-        above.axhline(1e3 * noise, color=DARK_GREY, linestyle=(0, (4, 2)), linewidth=0.7)
-        above.set_title(f"{model_label(model)}\nn = {int(result['used'].sel(quantity='history'))}")
-        level = float(result["window_first_order_chance"])
-        below.axhspan(-level, level, color=LIGHT_GREY, linewidth=0.0)
-        shown = share.where(spread >= noise)
-        for index in np.flatnonzero(used):
-            name = parameter_label(str(result["parameter"].values[index]))
-            line = {"color": _LINES[index % len(_LINES)], "marker": ".", "markersize": 3, "label": name}
-            below.plot(result["window"], shown.isel(parameter=index), **line)
-        below.set(ylim=(-0.3, 1.02), xlabel="time [s]")
-        if not (spread >= noise).any():
-            known = bool(np.isfinite(spread).any())
-            _say(below, "samples differ by less\nthan the marker's noise" if known else "too few samples")
-            below.tick_params(labelbottom=True, bottom=True)
-    panels[0, 0].set_ylim(bottom=FINEST)
-    panels[0, 0].set_ylabel("spread [mm]")
-    panels[1, 0].set_ylabel("share of it [1]")
-    handles = dict(zip(*reversed(panels[1, 0].get_legend_handles_labels()), strict=True))
-    figure.legend(handles.values(), handles.keys(), loc="outside upper center", ncols=3)
-    return figure
 
 
 def _draw_panel(axes, result, measure, noise):

@@ -1,19 +1,10 @@
-"""Section on the causes of the differences between samples: figures, words and the summary over cases."""
+"""Section on the causes of the differences between samples: figures and words."""
 
-from blockshake.pages.blocks import Figure, Heading, Items, Section, Table, Text
+from blockshake.pages.blocks import Figure, Heading, Items, Section, Text
 from blockshake.pages.drawing import svg_of
-from blockshake.pages.wording import MISSING, model_label, number
-from blockshake.study.sensitivity.figure import (
-    SHOWN,
-    is_shown,
-    plot_sensitivity,
-    plot_sensitivity_over_time,
-)
+from blockshake.pages.wording import model_label, number
+from blockshake.study.sensitivity.figure import SHOWN, is_shown, plot_sensitivity
 from blockshake.study.sensitivity.findings import (
-    differs,
-    influence_words,
-    influences,
-    is_known,
     markers_by_height,
     sentence,
     shared_words,
@@ -21,7 +12,7 @@ from blockshake.study.sensitivity.findings import (
 
 
 def sensitivities(content):
-    """Influence of each random variable on the thickness of the envelopes, in one table and case by case."""
+    """Influence of each random variable on the thickness of the envelopes, case by case."""
     blocks = [
         Text(
             "Two measures tell where the differences between samples come from. The first-order Sobol index of the "
@@ -39,7 +30,6 @@ def sensitivities(content):
             "index holds a part of the other's, which is not parted: a variable without an effect of its own then has "
             "up to r squared of the other's share."
         ),
-        summary_table(content),
         Items(_shared(content)),
     ]
     for case in content.cases.values():
@@ -77,8 +67,6 @@ def _case(case):
         for measure in SHOWN
         if any(is_shown(one, chosen.values(), measure, case.marker_noise) for one in results.values())
     ]
-    if not shown:
-        return blocks
     return [
         *blocks,
         *(
@@ -92,52 +80,4 @@ def _case(case):
             )
             for measure in shown
         ),
-        Figure(
-            f"{case.name}, {top}: standard deviation over the samples in every second (dashed: noise of a marker), and "
-            "the share of it that each variable of use explains by itself; grey: level of chance over all seconds, "
-            "blocks and variables.",
-            svg_of(plot_sensitivity_over_time, results, chosen[top], case.marker_noise),
-        ),
     ]
-
-
-def summary_table(content):
-    """The strongest variable of every case and model, at its lowest and highest block, with interval and chance."""
-    rows = []
-    marks = {
-        "line": "Line: samples that differ by less than the noise of a marker.",
-        MISSING: "None: too few samples.",
-    }
-    for case in content.cases.values():
-        shown = list(markers_by_height(case).items())
-        for model, response in case.responses.items():
-            for body, marker in (shown[0], shown[-1]):
-                at = response.sensitivity.sel(marker=marker)
-                spread = number(1e3 * at["spread"].sel(quantity="history"))
-                rows.append((case.name, model_label(model), body, spread, *_strongest(at, case.marker_noise)))
-    cells_shown = {cell for row in rows for cell in row}
-    return Table(
-        "Strongest variables at the lowest and the highest block. Spread: of the displacement relative to the slab, "
-        "standard deviation over samples and time. Then the variable of the largest first-order share of the spread, "
-        "and that of the largest partial rank correlation with the peak, each with its 95 % interval and, in round "
-        f"brackets, the level of chance.{''.join(f' {words}' for mark, words in marks.items() if mark in cells_shown)}",
-        ("Case", "Model", "Block", "Spread [mm]", "Largest share by itself [1]", "Largest rank correlation [1]"),
-        tuple(rows), "lllrll",
-    )  # fmt: skip
-
-
-def _strongest(result, noise):
-    """Strongest variable by each measure, in words."""
-    history = result.sel(quantity="history")
-    if is_known(history, "first_order") and not differs(history, noise):
-        return ["line"] * len(SHOWN)
-    cells = []
-    for measure, (quantity, *_) in SHOWN.items():
-        one = result.sel(quantity=quantity)
-        if not is_known(one, measure):
-            cells.append(MISSING)
-            continue
-        found = influences(one, measure)
-        side = "beyond" if found.beyond_chance else "within"
-        cells.append(f"{influence_words(found.ranked[0])} ({side} {found.chance:.2f})")
-    return cells

@@ -1,7 +1,5 @@
 """Sensitivity: which random variable makes the samples of an ensemble differ, block by block."""
 
-from itertools import pairwise
-
 import numpy as np
 import scipy
 import xarray as xr
@@ -23,7 +21,6 @@ from blockshake.study.sensitivity.measures import (
 )
 
 QUANTITIES = ("history", "peak")
-_WINDOW = 1.0  # s; about a cycle of rocking: shorter ones show the phase within it
 _KEPT = 1.0 - 1e-9  # of a history's variance, by the components that stand for it
 _MEASURES = {
     "first_order": first_order_share,
@@ -32,12 +29,6 @@ _MEASURES = {
 _DESCRIBED = {
     "first_order": ("first-order Sobol index, correlation ratio over classes of ranks", "1"),
     "rank_correlation": ("partial rank correlation", "1"),
-    "window_first_order": ("first-order Sobol index of the displacement within a second", "1"),
-    "window_first_order_chance": (
-        "what the largest of all seconds, markers and variables reaches without any effect", "1",
-    ),
-    "window_spread": ("standard deviation over the samples within a second", "m"),
-    "window": ("middle of the second", "s"),
     "spread": ("standard deviation over the samples", "m"),
     "explained": ("adjusted R^2 of a regression of ranks on all variables", "1"),
     "used": ("samples used", "1"),
@@ -87,8 +78,7 @@ def sensitivity(ensemble, variables, controls=()):
         ``used(quantity)``, samples; ``correlation(parameter, other)``, of the ranks of two variables among the
         completed samples; ``control(parameter)``, 1 where a variable cannot matter. Quantities, of each marker
         relative to the slab's along x: ``history``, the displacement at all times together, and ``peak``. A history
-        has no rank correlation; ``window_first_order(window, marker, parameter)`` is the index of its seconds one by
-        one, with ``window_spread`` [m].
+        has no rank correlation.
 
     Raises
     ------
@@ -120,7 +110,6 @@ def sensitivity(ensemble, variables, controls=()):
         used = np.isfinite(values).all(axis=(1, 2))
         parts.append(_measured(inputs[used], values[used], quantity == "history", generator))
     result = xr.concat(parts, dim=xr.Variable("quantity", list(QUANTITIES)))
-    result = result.merge(_over_time(counted, markers, slab, inputs, generator))
     result["control"] = ("parameter", np.array([name in controls for name in variables], dtype=np.int8))
     completed = inputs[counted["status"].values == Status.COMPLETED]
     enough = len(completed) >= FEWEST_SAMPLES
@@ -142,31 +131,6 @@ def _outputs(counted, quantity, markers, slab):
     return values[:, :, None]
 
 
-def _over_time(counted, markers, slab, inputs, generator):
-    """First-order shares of the displacement window by window, and their level of chance."""
-    histories = completed_histories(counted, markers, slab)
-    used = np.isfinite(histories).all(axis=(1, 2))
-    edges, middle = window_bounds(counted["time"].to_numpy())
-    shape = (len(middle), len(markers))
-    shares, spread, level = np.full((*shape, inputs.shape[1]), np.nan), np.full(shape, np.nan), np.nan
-    if used.sum() >= FEWEST_SAMPLES:
-        pieces = [principal_components(histories[used][:, :, a:b]) for a, b in pairwise(edges)]
-        most = max(piece.shape[2] for piece in pieces)
-        padded = [np.pad(piece, ((0, 0), (0, 0), (0, most - piece.shape[2]))) for piece in pieces]
-        outputs = np.concatenate(padded, axis=1)
-        shares = first_order_share(inputs[used], outputs).reshape(*shape, -1)
-        spread = np.sqrt(outputs.var(axis=0).sum(axis=1)).reshape(shape)
-        level = chance_level(first_order_share, inputs[used], outputs, generator)
-    return xr.Dataset(
-        {
-            "window_first_order": (("window", "marker", "parameter"), shares),
-            "window_spread": (("window", "marker"), spread),
-            "window_first_order_chance": ((), level),
-        },
-        coords={"window": middle},
-    )
-
-
 def completed_histories(counted, markers, slab):
     """Displacement along x relative to the slab's marker of completed samples, (n_samples, n_markers, n_times) [m].
 
@@ -176,27 +140,6 @@ def completed_histories(counted, markers, slab):
     along = relative_to_slab(counted["marker_displacement"].sel(axis="x", drop=True), slab)
     along = along.sel(marker=markers).transpose("sample", "marker", "time").to_numpy()
     return np.where(completed[:, None, None], along, np.nan)
-
-
-def window_bounds(times):
-    """First and last sample of each window of a second, and its middle.
-
-    Parameters
-    ----------
-    times : float64 array, shape (n_times,)
-        [s], from 0, evenly spaced.
-
-    Returns
-    -------
-    edges : int64 array, shape (n_windows + 1,)
-    middle : float64 array, shape (n_windows,)
-        [s]; a rest shorter than half a window belongs to the last one.
-    """
-    count = max(1, int(np.floor((times[-1] - times[0]) / _WINDOW + 0.5)))
-    starts = np.searchsorted(times, times[0] + _WINDOW * np.arange(count) - 1e-9)
-    edges = np.append(starts, len(times))
-    last = np.append(times[starts[1:]], times[-1])
-    return edges, 0.5 * (times[starts] + last)
 
 
 def principal_components(histories):
@@ -266,8 +209,6 @@ def _described(result, ensemble, counted, seed):
             "confidence": CONFIDENCE,
         }  # fmt: skip
         of["ancillary_variables"] = f"{name}_interval {name}_chance"
-    result["window_first_order"].attrs["ancillary_variables"] = "window_first_order_chance"
-    result["window_first_order_chance"].attrs["confidence"] = CONFIDENCE
     for name, long_name in _NAMED.items():
         result[name].attrs = {"long_name": long_name}
     result.attrs = {

@@ -1,12 +1,9 @@
-"""Waves in a tower and the stiffness found from them: the paper's Figs. 9 and 10."""
+"""Waves in a tower, as in the paper's Fig. 9."""
 
 import numpy as np
 
 from blockshake.pages.drawing import BLACK, BLUE, GREEN, GREY, ORANGE, RED, new_figure
-from blockshake.pages.units import MICROMETRES, printed
-from blockshake.pages.wording import parameter_label
-from blockshake.study.sampling.distributions import parameter_unit
-from blockshake.study.sampling.figure import bin_count
+from blockshake.pages.units import MICROMETRES
 
 _LINES = (BLUE, GREEN, ORANGE, RED, BLACK, GREY)
 _STEP = {"normal": "vertical step: normal stiffness", "shear": "horizontal step: shear stiffness"}
@@ -29,26 +26,4 @@ def plot_waves(waves):
     panels[0].set_ylabel(f"displacement [{MICROMETRES.name}]")
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=len(handles))
-    return figure
-
-
-def plot_stiffness(stiffness):
-    """Figure of histograms of the calibrated stiffness over the samples [N/m3]: the paper's Fig. 10.
-
-    Columns ``ls_dem.normal_stiffness`` and ``ls_dem.shear_stiffness``.
-    """
-    figure = new_figure(0.055)
-    panels = figure.subplots(1, 2, sharey=True)
-    for axes, (name, color) in zip(
-        panels, (("ls_dem.normal_stiffness", BLUE), ("ls_dem.shear_stiffness", RED)), strict=True
-    ):
-        factor, unit = printed(parameter_unit(name))
-        axes.hist(
-            factor * stiffness[name], bins=bin_count(len(stiffness)), color=color, alpha=0.6,
-            edgecolor="black", linewidth=0.5,
-        )  # fmt: skip
-        axes.set(xlabel=f"{parameter_label(name)} [{unit}]")
-        axes.grid(False, axis="x")
-        axes.yaxis.get_major_locator().set_params(integer=True)
-    panels[0].set_ylabel("samples")
     return figure

@@ -3,12 +3,10 @@
 from blockshake.pages.blocks import Figure, Section, Table, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.units import printed, quantity
-from blockshake.pages.wording import given, number, parameter_label, percent
+from blockshake.pages.wording import given, number, parameter_label
 from blockshake.study.sampling.distributions import parameter_unit
-from blockshake.study.stiffness.figure import plot_stiffness, plot_waves
+from blockshake.study.stiffness.figure import plot_waves
 from blockshake.study.stiffness.wave_speed import speed_deviation
-
-_ALIKE = 1e-3  # of the mean: values that lie closer print alike
 
 
 def stiffness(content):
@@ -57,13 +55,10 @@ def _speeds(waves, of):
 
 
 def _stiffness_of_samples(stiffness, of):
-    """Histograms of the stiffness of the samples, or their one value."""
-    caption = f"Stiffness per area of the {len(stiffness)} samples{of}"
-    mean, spread = stiffness.mean(), stiffness.max() - stiffness.min()
-    if (spread > _ALIKE * mean).any():
-        return Figure(f"{caption}.", svg_of(plot_stiffness, stiffness))
+    """Smallest, mean and largest stiffness of the samples, in a sentence."""
     values = []
-    for name, value in mean.items():
+    for name, column in stiffness.items():
         factor, unit = printed(parameter_unit(name))
-        values.append(f"{parameter_label(name)} {number(factor * value)} {unit}")
-    return Text(f"{caption}: {', '.join(values)}, the same in all within {percent(_ALIKE)} %.")
+        low, mean, high = (number(factor * value) for value in (column.min(), column.mean(), column.max()))
+        values.append(f"{parameter_label(name)} {low} to {high} {unit}, mean {mean}")
+    return Text(f"Stiffness per area of the {len(stiffness)} samples{of}: {'; '.join(values)}.")

@@ -1,1 +1,0 @@
-"""The paper, statement by statement: each judged from the results of the study at hand."""
