@@ -44,8 +44,10 @@ def _tables(run, histories):
     bodies = ("position", "orientation", "velocity", "angular_velocity")
     yield "bodies", _table("body", [*(run[name] for name in bodies), histories["drift"]])
     states = ("normal_force", "shear_force", "friction_ratio", "uplift", "slip", "joint_position")
-    force = run["joint_force"].assign_coords(joint=histories["joint"])
-    yield "joints", _table("joint", [force, *(histories[name] for name in states)], ("lower", "upper"))
+    yield (
+        "joints",
+        _table("joint", [run["joint_force"], *(histories[name] for name in states)], ("lower", "upper")),
+    )
     yield "markers", _table("marker", [run["marker_displacement"]], ("marker_body",))
     energy = {f"{term}_J": run["energy"].sel(term=term).to_numpy() for term in run["term"].values}
     yield "energy", pd.DataFrame({"time_s": run["time"], **energy, "residual_J": histories["residual"]})

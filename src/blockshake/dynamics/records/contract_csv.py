@@ -55,14 +55,55 @@ def read_motion_csv(text, where):
             for name, cell in zip(header, row, strict=True)
         ]
     columns = {name: values[:, index] for index, name in enumerate(header)}
+    return *_checked_rows(columns, lines, where, "line"), kind
+
+
+def motion_of_arrays(arrays, where):
+    """Time, columns and kind, as of `read_motion_csv`, of arrays by the names of a motion file's columns.
+
+    Parameters
+    ----------
+    arrays : mapping of str to array, shape (n_rows,)
+        Or a table that gives its columns by name, as of pandas.
+    where : str
+        What a message names.
+
+    Raises
+    ------
+    InputError
+        Of `read_motion_csv`, with the number of a row from 0 in place of a line.
+    """
+    if not hasattr(arrays, "keys"):
+        raise InputError(where, "", "expected a name, a path, or arrays by the names of columns")
+    names = list(arrays.keys())  # of a table too, which is no mapping
+    kind, columns = _check_header(names, where), {}
+    rows = len(np.atleast_1d(arrays["time_s"]))
+    for name in names:
+        try:
+            columns[name] = np.array(arrays[name], dtype=float)
+        except (TypeError, ValueError):
+            raise InputError(where, name, "expected an array of numbers") from None
+        if columns[name].shape != (rows,) or rows < 2:
+            wrong = f"expected {max(rows, 2)} numbers, one a row, found an array of {columns[name].shape}"
+            raise InputError(where, name, wrong)
+        if not np.isfinite(columns[name]).all():
+            row = int(np.argmin(np.isfinite(columns[name])))
+            raise InputError(
+                where, f"row {row}, {name}", f"expected a finite number, found {columns[name][row]}"
+            )
+    return *_checked_rows(columns, range(rows), where, "row"), kind
+
+
+def _checked_rows(columns, lines, where, row):
+    """Times and columns by channel of rows of finite numbers, on these lines of a file."""
     time = columns.pop("time_s")
     for name, column in columns.items():
         coded = missing_code(column)
         if coded is not None:
             expected = f"expected a value; {column[coded]:g} looks like a code for none"
-            raise InputError(where, f"line {lines[coded]}, {name}", expected)
-    check_times(time, lines, where, "time_s")
-    return time, {name if name == "pitch_y" else name[-1]: column for name, column in columns.items()}, kind
+            raise InputError(where, f"{row} {lines[coded]}, {name}", expected)
+    check_times(time, lines, where, "time_s", row)
+    return time, {name if name == "pitch_y" else name[-1]: column for name, column in columns.items()}
 
 
 def _rows(text):

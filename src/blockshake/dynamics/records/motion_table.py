@@ -9,7 +9,7 @@ from blockshake.dynamics.baseline import settle
 from blockshake.dynamics.motion import CHANNELS, check_finite, ground_motion
 from blockshake.dynamics.records.header_checks import ROUNDING
 from blockshake.dynamics.records.times import check_times
-from blockshake.errors import InputError
+from blockshake.errors import Argument, InputError
 from blockshake.tables.numbers import plain_number
 from blockshake.tables.series_file import read_series
 from blockshake.tables.table_file import read_table
@@ -63,15 +63,15 @@ def load_motion_table(source, layout, time, columns, unit, time_unit, baseline, 
         A missing column, a column twice, an unknown unit or channel, a cell that is no number, times that do not
         increase or have a gap; a correction of other than evenly spaced accelerations.
     """
-    kind = kind_of_unit(unit, ("acceleration", "velocity", "displacement"), "--unit", unit)
-    given = kind, unit_size(kind, unit, "--unit", unit)
+    kind = kind_of_unit(unit, ("acceleration", "velocity", "displacement"), Argument("unit"), unit)
+    given = kind, unit_size(kind, unit, Argument("unit"), unit)
     for channel in columns:
         if channel not in CHANNELS[:3]:
-            raise InputError("--column", channel, f"expected {', '.join(CHANNELS[:3])}")
+            raise InputError(Argument("columns"), channel, f"expected {', '.join(CHANNELS[:3])}")
     names = [name.strip() for name in columns.values()]
     if len(set(names)) < len(names) or (time_step is None and time.strip() in names):
         raise InputError(
-            "--column", ", ".join(names), "expected every column once, and not that of the times"
+            Argument("columns"), ", ".join(names), "expected every column once, and not that of the times"
         )
     assumed = f"{unit.strip()}, as given"
     if columns:
@@ -86,7 +86,7 @@ def load_motion_table(source, layout, time, columns, unit, time_unit, baseline, 
         if width > 1:
             assumed += f"; {width} values a line, row by row"
     if time_step is None:
-        at = _finite(table, time, unit_size("time", time_unit, "--time-unit", time_unit), "time")
+        at = _finite(table, time, unit_size("time", time_unit, Argument("time_unit"), time_unit), "time")
         check_times(at, table.lines, where, time)
     else:
         at = time_step * np.arange(len(next(iter(read.values()))))
@@ -122,8 +122,8 @@ def _check_untimed(table, columns, time_step):
         if time is None or len(time) < 2 or not (np.diff(time) > 0.0).all():
             continue
         if not np.isclose((time[-1] - time[0]) / (len(time) - 1), [1.0, time_step], rtol=ROUNDING).any():
-            wrong = f"expected a table without times; '{name}' counts as they do: --time and --time-unit"
-            raise InputError("--time-step", f"{time_step:g}", wrong)
+            wrong = f"expected a table without times; '{name}' counts as they do: name it, and its unit"
+            raise InputError(Argument("time_step"), f"{time_step:g}", wrong)
 
 
 def _series(source, layout, time_step, given):
@@ -136,11 +136,11 @@ def _series(source, layout, time_step, given):
     for count, step in _COUNT_AND_STEP.findall(text):
         counts, steps = [*counts, float(count)], [*steps, _seconds(step, "")]
     for stated, actual, name in (
-        (steps, time_step, "--time-step"),
+        (steps, time_step, "time_step"),
         (counts, len(values), "number of values"),
     ):
         for one in stated:
-            if abs(one - actual) > ROUNDING * actual * (name == "--time-step"):
+            if abs(one - actual) > ROUNDING * actual * (name == "time_step"):
                 raise InputError(source, name, f"expected {one:g}, as the file says, found {actual:g}")
     named = [(stated, known_unit(stated)) for stated in _UNIT.findall(header)]
     for line in header.split("\n"):
@@ -148,7 +148,7 @@ def _series(source, layout, time_step, given):
         named.append((line, unit_of_name(line.rstrip(" :.,;"), own)))
     for stated, unit in named:
         if unit and unit != given and unit[0] in ("acceleration", given[0]):
-            raise InputError(source, "--unit", f"expected '{stated}', as the file says")
+            raise InputError(source, "unit", f"expected '{stated}', as the file says")
     return {"x": float(given[1]) * values}, width
 
 
