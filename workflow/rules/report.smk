@@ -21,6 +21,7 @@ rule make_report:
         study=CHECKED.model_dump(mode="json"),
         results="results/{study}",
         logs="logs/{study}",
+        said=said(lambda wildcards: files_of_report()),
         source=source_of("make_report"),
     script:
         "../scripts/make_report.py"
@@ -42,6 +43,7 @@ rule make_case_report:
         case="{case}",
         results="results/{study}",
         logs="logs/{study}",
+        said=said(lambda wildcards: files_of_report(wildcards.case)),
         source=source_of("make_case_report"),
     script:
         "../scripts/make_case_report.py"

@@ -5,6 +5,13 @@ LADDER_MOTIONS = config["ladder"]["motions"] or list(
     dict.fromkeys(case["motion"] for case in config["cases"])
 )
 
+LADDER_FILES = {
+    "structures": [
+        definition("structures", case["structure"]) for case in CASES.values()
+    ],
+    "motions": [definition("motions", motion) for motion in LADDER_MOTIONS],
+}
+
 
 rule compile_kernels:
     """A solver compiled once, before jobs that would all do it."""
@@ -38,6 +45,7 @@ rule simulate_batch:
         runs=sample_runs,
         seed=lookup(dpath="ensemble/seed", within=config),
         store="results/store",
+        said=said(run_files),
         source=lambda wildcards: source_of("simulate_batch", wildcards.model),
     script:
         "../scripts/simulate_batch.py"
@@ -59,6 +67,7 @@ rule run_twins:
         runs=sample_runs,
         seed=lookup(dpath="ensemble/seed", within=config),
         store="results/store",
+        said=said(run_files),
         source=lambda wildcards: source_of("run_twins", wildcards.model),
     script:
         "../scripts/run_twins.py"
@@ -67,10 +76,7 @@ rule run_twins:
 rule climb_ladder:
     """The paper's ladder of intensities with nominal parameters: what the cases' scales were taken from."""
     input:
-        structures=[
-            definition("structures", case["structure"]) for case in CASES.values()
-        ],
-        motions=[definition("motions", motion) for motion in LADDER_MOTIONS],
+        **LADDER_FILES,
         kernels=kernels("ls-dem"),
     output:
         "results/{study}/ladder.json",
@@ -84,6 +90,7 @@ rule climb_ladder:
         ladder=lookup(dpath="ladder", within=config),
         time_step=LS_DEM_STEP,
         store="results/store",
+        said=said(LADDER_FILES),
         source=source_of("climb_ladder", "ls-dem"),
     script:
         "../scripts/climb_ladder.py"

@@ -11,7 +11,7 @@ import numpy as np
 from blockshake.dynamics.baseline import AUTO, NONE, settle
 from blockshake.dynamics.motion import GroundMotion, check_finite, ground_motion
 from blockshake.dynamics.records.at2 import is_at2, read_at2
-from blockshake.dynamics.records.contract_csv import motion_of_arrays, read_motion_csv
+from blockshake.dynamics.records.contract_csv import kept_attributes, motion_of_arrays, read_motion_csv
 from blockshake.dynamics.records.cosmos import is_cosmos, read_cosmos
 from blockshake.dynamics.records.csmip import is_csmip, read_csmip
 from blockshake.dynamics.records.dyna import is_dyna, read_dyna
@@ -121,7 +121,9 @@ def _read(source, baseline, channels):
         )
     _check_no_channels(channels, path)
     if "time_s" in text.partition("\n")[0] or ending == ".csv":
-        return settle(_motion_of_rows(read_motion_csv(text, path), path.name, "csv"), baseline, path)
+        motion = _motion_of_rows(read_motion_csv(text, path), path.name, "csv")
+        kept = motion.attributes | kept_attributes(path, text)
+        return settle(replace(motion, attributes=kept), baseline, path)
     raise InputError(
         path, "",
         "expected a motion CSV (time_s, acceleration_x, ...), ESM/ITACA DYNA 1.2, PEER AT2, COSMOS V2, CSMIP V2, "

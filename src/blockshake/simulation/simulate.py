@@ -13,10 +13,11 @@ from scipy.spatial.transform import Rotation
 
 import blockshake
 from blockshake.dynamics.baseline import check_window
-from blockshake.dynamics.load_motion import MotionSource, load_motion, plain_attributes
+from blockshake.dynamics.load_motion import MotionSource, load_motion, plain_attributes, provenance
 from blockshake.dynamics.motion import PITCH, GroundMotion, ground_motion
 from blockshake.dynamics.system import FINISHED, Status
 from blockshake.errors import Argument, InputError
+from blockshake.files import history
 from blockshake.geometry.overlap import depths_of_pairs
 from blockshake.geometry.rotations import rotate_into
 from blockshake.geometry.structure import START_TOLERANCE, Structure, StructureSource, load_structure
@@ -185,14 +186,21 @@ class _SetUp(NamedTuple):
             "structure_file": file.model_dump_json(),
             "motion_scale": 1.0,
             "motion_synthetic": 0,
-            **{f"motion_{name}": value for name, value in plain_attributes(motion.attributes).items()},
+            **{
+                f"motion_{name}": value
+                for name, value in plain_attributes(motion.attributes).items()
+                if name != "history"
+            },
             "parameters": json.dumps(
                 effective_parameters(self.structure, self.model, self.numerical), sort_keys=True
             ),
             **{f"numerics_{name}": value for name, value in trajectory.numerics.items()},
             "blockshake_version": blockshake.__version__,
             "source_digest": source_digest(*module_sources("simulation/simulate.py", self.model)),
-            "history": "made by blockshake simulate",
+            "history": history(
+                motion.attributes.get("history"),
+                f"simulate: {file.name} under {motion.name} of {provenance(motion.attributes)}",
+            ),
         }
 
 

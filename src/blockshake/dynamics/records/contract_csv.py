@@ -2,6 +2,7 @@
 
 import csv
 import io
+from pathlib import Path
 
 import numpy as np
 
@@ -9,10 +10,12 @@ from blockshake.dynamics.motion import CHANNELS
 from blockshake.dynamics.records.record import finite_number
 from blockshake.dynamics.records.times import check_times
 from blockshake.errors import InputError
-from blockshake.files import write_text
+from blockshake.files import content_digest, load_json, write_json, write_text
 from blockshake.geometry.schema import AXES
 from blockshake.tables.numbers import missing_code
 
+METADATA = "-metadata.json"
+_OF_ITS_TIMES = ("first_time", "record_start")  # which a CSV counts from its own first row
 KINDS = ("acceleration", "velocity", "displacement")
 
 
@@ -134,7 +137,7 @@ def _check_header(header, where):
 
 
 def write_motion_csv(motion, path):
-    """Write a motion as the project's CSV, in the kind it came from, with all its digits.
+    """Write a motion as the project's CSV, in the kind it came from, with all its digits; its attributes beside it.
 
     Channels that never move are left out (``x`` stays when all rest). Read again, the file gives
     the same displacement from its first row: a constant offset of a motion integrated from
@@ -144,7 +147,8 @@ def write_motion_csv(motion, path):
     ----------
     motion : GroundMotion
     path : str or path
-        Replaced atomically.
+        Replaced atomically. ``PATH-metadata.json``, named as in CSV on the Web (W3C), holds the attributes, and a
+        digest of the CSV: a CSV that was altered since has none.
     """
     breaks, coefficients = motion.table
     order = {"displacement": 0, "velocity": 1, "acceleration": 2}[motion.kind]
@@ -157,7 +161,26 @@ def write_motion_csv(motion, path):
             columns[f"{motion.kind}_{CHANNELS[index]}"] = _at_rows(breaks, coefficients[:, index], order)
     lines = [",".join(columns)]
     lines += [",".join(repr(float(cell)) for cell in row) for row in zip(*columns.values(), strict=True)]
-    write_text(path, "\n".join(lines) + "\n")
+    text = "\n".join(lines) + "\n"
+    write_text(path, text)
+    kept = {name: value for name, value in motion.attributes.items() if name not in _OF_ITS_TIMES}
+    write_json(f"{path}{METADATA}", {"csv": content_digest(text.encode()), "attributes": kept})
+
+
+def kept_attributes(path, text):
+    """Attributes that `write_motion_csv` left beside a file of this text; none where the text is another."""
+    beside = Path(f"{path}{METADATA}")
+    try:
+        kept = load_json(beside) if beside.is_file() else {}
+        if kept.get("csv") != content_digest(text.encode()):
+            return {}
+        return {
+            str(name): value
+            for name, value in kept["attributes"].items()
+            if isinstance(value, (str, int, float))
+        }
+    except (InputError, AttributeError, KeyError):
+        return {}
 
 
 def _at_rows(breaks, c, order):
