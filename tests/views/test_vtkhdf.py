@@ -43,6 +43,18 @@ def test_every_step_finds_its_points_and_cells(files):
                 assert len(root["CellData"][name]) == n_cells * (41 if per_step else 1)
 
 
+def test_numbers_of_bodies_and_joints_have_names(files):
+    for file, name, expected in (
+        (files[0], "body_names", ["slab", "lower", "upper"]),
+        (files[1], "joint_names", ["slab-lower", "lower-upper"]),
+    ):
+        with netCDF4.Dataset(file) as content:
+            root = content["VTKHDF"]
+            assert root["FieldData"][name][:].tolist() == expected
+            assert not root["Steps"]["FieldDataOffsets"][name][:].any()
+            assert root["Steps"]["FieldDataSizes"][name][:].tolist() == [[1, len(expected)]] * 41
+
+
 def test_points_are_the_corners_of_the_turned_blocks(files, leaning_run):
     run, structure = leaning_run
     with netCDF4.Dataset(files[0]) as content:
@@ -65,6 +77,9 @@ def test_vtk_reads_blocks_and_joints_over_time(files, leaning_run):
         reader.UpdateTimeStep(1.0)
         cells = reader.GetOutputDataObject(0).GetCellData()
         assert cells.GetArray(name).GetTuple(0)[0] == pytest.approx(expected)
+        names = reader.GetOutputDataObject(0).GetFieldData().GetAbstractArray(0)
+        read = [names.GetValue(row) for row in range(names.GetNumberOfValues())]
+        assert read == (["slab", "lower", "upper"] if name == "velocity" else ["slab-lower", "lower-upper"])
 
 
 def test_a_run_in_national_coordinates_counts_from_a_local_origin(files, leaning_run, tmp_path):

@@ -8,7 +8,8 @@ from blockshake.files import shipped
 
 DESCRIBED = "results/small/motions/own.nc"
 # by which the input of a rule names files of users
-NAMED = r"structure_file|case_files|run_files|files_of_report|motion_file|LADDER_FILES|test_files|open_tests"
+NAMED = r"\b(?:structure_file|case_files|run_files|files_of_report|motion_file|"
+NAMED += r"LADDER_FILES|measured_files|open_files)\b"
 
 
 def due(checkout):

@@ -46,13 +46,13 @@ def campaign_files(case, every=False):
     return [by_content(path) for path in files_of_tests(campaign, tests)]
 
 
-def test_files(wildcards):
+def measured_files(wildcards):
     """The same of the case of a rule, without any where it is compared with none."""
     case = wildcards.case
     return campaign_files(case) if CASES[case]["measured"] else []
 
 
-def open_tests(wildcards):
+def open_files(wildcards):
     """Those of every test of a case that is not sealed."""
     return campaign_files(wildcards.case, every=True)
 

@@ -25,7 +25,7 @@ rule compare_with_measurement:
     input:
         unpack(batches_of_models),
         base="results/{study}/inputs/{case}.nc",
-        campaign=test_files,
+        campaign=measured_files,
     output:
         [f"results/{{study}}/comparisons/{model}/{{case}}.nc" for model in MODELS],
     log:
@@ -35,7 +35,7 @@ rule compare_with_measurement:
     params:
         models=MODELS,
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
-        said=said(test_files),
+        said=said(measured_files),
         source=source_of("compare_with_measurement"),
     script:
         "../scripts/compare_with_measurement.py"
@@ -71,7 +71,7 @@ rule compare_models:
             if CASES[wildcards.case]["measured"]
             else []
         ),
-        campaign=test_files,
+        campaign=measured_files,
     output:
         "results/{study}/differences/{case}.nc",
     log:
@@ -81,7 +81,7 @@ rule compare_models:
     params:
         models=MODELS,
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
-        said=said(test_files),
+        said=said(measured_files),
         source=source_of("compare_models"),
     script:
         "../scripts/compare_models.py"

@@ -7,7 +7,7 @@ rule measure_changes:
             if CASES[wildcards.case]["measured"]
             else []
         ),
-        campaign=test_files,
+        campaign=measured_files,
     output:
         "results/{study}/changes/{case}.nc",
     log:
@@ -18,7 +18,7 @@ rule measure_changes:
         models=MODELS,
         climber=FRAGILITY.get("model"),
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
-        said=said(test_files),
+        said=said(measured_files),
         source=source_of("measure_changes"),
     script:
         "../scripts/measure_changes.py"
