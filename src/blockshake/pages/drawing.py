@@ -63,9 +63,18 @@ def column_title(words, columns):
     return "\n".join("\n".join(line) for line in lines)
 
 
+class _Picture(Figure):
+    """A figure that a notebook shows, whether pyplot is at work there or not."""
+
+    def _repr_png_(self):
+        content = io.BytesIO()
+        self.savefig(content, format="png")
+        return content.getvalue()
+
+
 def new_figure(height, width=PAGE_WIDTH):
     """Empty figure of this size [m] whose parts are laid out without overlap."""
-    return Figure(figsize=(width / _INCH, height / _INCH), layout="constrained")
+    return _Picture(figsize=(width / _INCH, height / _INCH), layout="constrained")
 
 
 def check_picture(path):

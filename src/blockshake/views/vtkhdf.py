@@ -1,6 +1,7 @@
 """A run for ParaView: two VTKHDF files over time, the blocks' surfaces and the joints with their forces."""
 
 import contextlib
+import re
 from pathlib import Path
 
 import netCDF4
@@ -37,8 +38,8 @@ def write_vtkhdf(path, run, histories, structure):
     Polygonal data over time, inertial frame, SI. The cells of the first file are the faces of the bodies, each with
     its body's number in the file of the run (``body``), ``velocity`` of the mass centre, ``angular_velocity`` and
     ``drift``. Those of the second are points, one a joint, with ``force`` on the upper body, ``normal_force``,
-    ``shear_force``, ``friction_ratio``, ``uplift`` and ``slip``, which are NaN where they are unknown. Names, in the
-    order of the numbers, are the field data ``body_names`` and ``joint_names``. Points count
+    ``shear_force``, ``friction_ratio``, ``uplift`` and ``slip``, which are NaN where they are unknown. The
+    field data give every body, or joint, its number by its name, in which ``_`` stands for other signs. Points count
     from `local_origin`, which is the attribute ``LocalOrigin`` [m] where it is another than 0.
     """
     base, origin = Path(path), local_origin(run)
@@ -70,7 +71,7 @@ def _blocks(run, histories, structure, origin):
         "angular_velocity": run["angular_velocity"].to_numpy()[:, owners],
         "drift": histories["drift"].to_numpy()[:, owners],
     }
-    names = {"body_names": structure.body_names}
+    names = structure.body_names
     return np.concatenate(places, axis=1), "Polygons", cells, values, {"body": np.array(owners)}, names
 
 
@@ -78,7 +79,7 @@ def _joints(run, histories, origin):
     values = {"force": run["joint_force"].to_numpy()}
     values |= {name: histories[name].to_numpy() for name in JOINT_HISTORIES}
     cells = [np.array([joint]) for joint in range(histories.sizes["joint"])]
-    names = {"joint_names": histories["joint"].values.tolist()}
+    names = histories["joint"].values.tolist()
     return histories["joint_position"].to_numpy() - origin, "Vertices", cells, values, {}, names
 
 
@@ -116,12 +117,12 @@ def _write(path, times, origin, points, kind, cells, values, steady, names):
         for name, array in steady.items():
             _put(file, data, name, array)
             _put(file, offsets, name, zero)
-        data = root.createGroup("FieldData")
-        offsets, sizes = (steps.createGroup(f"FieldData{of}") for of in ("Offsets", "Sizes"))
-        for name, words in names.items():
-            _put(file, data, name, np.array(words, dtype=object))
-            _put(file, offsets, name, zero)
-            _put(file, sizes, name, np.tile([1, len(words)], (n_times, 1)))  # components and tuples
+        data, offsets = root.createGroup("FieldData"), steps.createGroup("FieldDataOffsets")
+        for number, name in enumerate(names):  # numbers, as VTK reads no texts that netCDF's library writes
+            plain = re.sub(r"[^\w -]", "_", name).strip() or "_"
+            plain += f" ({number})" if plain in data.variables else ""
+            _put(file, data, plain, np.array([number]))
+            _put(file, offsets, plain, zero)
 
 
 def _put(file, group, name, array):
@@ -131,6 +132,6 @@ def _put(file, group, name, array):
         dims.append(f"n{length}")
         if dims[-1] not in file.dimensions:
             file.createDimension(dims[-1], length or None)
-    kind = {"f4": _REAL, "f8": "f8", "O": str}.get(array.dtype.str[1:], _INT)
-    packed = {"compression": "zlib", "complevel": 2} if array.size > 64 and kind is not str else {}
-    group.createVariable(name, kind, dims, fill_value=None if kind is str else False, **packed)[:] = array
+    kind = _REAL if array.dtype == np.float32 else ("f8" if array.dtype.kind == "f" else _INT)
+    packed = {"compression": "zlib", "complevel": 2} if array.size > 64 else {}
+    group.createVariable(name, kind, dims, fill_value=False, **packed)[:] = array
