@@ -63,10 +63,10 @@ def test_a_motion_of_arrays_is_that_of_their_file(table, tmp_path):
 @pytest.mark.parametrize(
     ("arrays", "words"),
     [
-        ({"time_s": TIME, "acceleration_x": SINE[1:]}, r"arrays: acceleration_x: expected 200 numbers, .* \(199,\)"),
+        ({"time_s": TIME, "acceleration_x": SINE[1:]}, "arrays: .* two numbers, all of one length"),
         ({"time_s": TIME}, "arrays: expected at least one column of motion beside time_s"),
         ({"time_s": TIME, "acceleration_u": SINE}, "arrays: column 'acceleration_u': expected one of"),
-        ({"time_s": TIME, "acceleration_x": ["a"] * 200}, "arrays: acceleration_x: expected an array of numbers"),
+        ({"time_s": TIME, "acceleration_x": ["a"] * 200}, "arrays: expected arrays of at least two numbers"),
         ({"time_s": TIME[::-1], "acceleration_x": SINE}, "arrays: row 1, time_s: expected times that increase"),
         ({"time_s": TIME, "velocity_x": np.where(TIME == 1.0, np.nan, 0.0)}, "arrays: row 100, velocity_x: expected a"),
         (5, "arrays: expected a name, a path, or arrays by the names of columns"),

@@ -16,6 +16,7 @@ from blockshake import __version__
 from blockshake.errors import InputError
 from blockshake.interrupts import delayed_interrupts
 
+AnyPath = str | os.PathLike[str]
 PACKAGE = Path(__file__).parent
 _INSTALLED = PACKAGE / "shipped"
 # what ships beside the package: a checkout's own folders, or the copy of them in an installed package

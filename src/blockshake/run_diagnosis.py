@@ -3,11 +3,10 @@
 import json
 import os
 import shutil
-from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from blockshake.files import HOME, PACKAGE, check_output
+from blockshake.files import HOME, PACKAGE, AnyPath, check_output
 from blockshake.own_files.run_workflow import cores_of, run_workflow, workflow_command
 from blockshake.working_folder import hold
 
@@ -18,8 +17,8 @@ _ALWAYS_MADE = ("verdict.json", "decision.json", "parity.json", "evidence.nc")
 
 
 def diagnose(
-    campaign: str | PathLike[str],
-    output: str | PathLike[str],
+    campaign: AnyPath,
+    output: AnyPath,
     effort: str = "standard",
     cores: int | None = None,
 ) -> "Verdict":

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from blockshake.dynamics.records.record import chosen_records
 from blockshake.dynamics.records.smc import is_smc, read_smc
 from blockshake.dynamics.synthetic_motion import load_synthetic, synthesise
 from blockshake.errors import InputError
-from blockshake.files import named_file, read_foreign_text
+from blockshake.files import AnyPath, named_file, read_foreign_text
 
 # content decides; the ending only where a broken file of that format should say what it lacks
 _RECORD_FORMATS = (
@@ -35,7 +35,7 @@ _RECORD_FORMATS = (
 
 _ARRAYS = "arrays"  # what a message calls them
 # a name, a path, arrays by the names of columns (or a table of pandas), or a motion
-MotionSource = str | PathLike[str] | Mapping[str, Any] | GroundMotion
+MotionSource: TypeAlias = AnyPath | Mapping[str, Any] | GroundMotion
 
 
 def load_motion(
@@ -100,9 +100,8 @@ def scaled(motion, scale, source):
 def _read(source, baseline, channels):
     if not isinstance(source, (str, PathLike)):
         _check_no_channels(channels, _ARRAYS)
-        return settle(
-            _motion_of_rows(motion_of_arrays(source, _ARRAYS), _ARRAYS, "Python"), baseline, _ARRAYS
-        )
+        motion = _motion_of_rows(motion_of_arrays(source, _ARRAYS), _ARRAYS, "Python")
+        return settle(motion, baseline, _ARRAYS)
     path = named_file("motions", source)
     if path.suffix.lower() in (".yaml", ".yml"):
         _check_no_channels(channels, path)

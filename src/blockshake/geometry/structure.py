@@ -3,7 +3,6 @@
 import copy
 from collections.abc import Mapping
 from dataclasses import dataclass
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,7 @@ import numpy as np
 import trimesh
 
 from blockshake.errors import InputError
-from blockshake.files import content_digest, load_yaml, named_file
+from blockshake.files import AnyPath, content_digest, load_yaml, named_file
 from blockshake.geometry.mass_offset import check_offset, offset_inertia, offset_solid
 from blockshake.geometry.meshes.mesh_file import read_mesh
 from blockshake.geometry.overlap import depths_of_pairs, near_pairs
@@ -179,7 +178,7 @@ class Structure(Shown):
 
 
 # a name, a path, what a file holds, or a structure
-StructureSource = str | PathLike[str] | Mapping[str, Any] | Structure
+StructureSource = AnyPath | Mapping[str, Any] | Structure
 
 
 def load_structure(source: StructureSource, parameters: Mapping[str, Any] | None = None) -> Structure:

@@ -2,7 +2,6 @@
 
 import tempfile
 from collections.abc import Callable
-from os import PathLike
 from pathlib import Path
 
 from blockshake.diagnosis.nominal.plan import plan_diagnosis
@@ -13,7 +12,7 @@ from blockshake.dynamics.load_motion import load_motion, provenance, scaled
 from blockshake.dynamics.motion import GroundMotion
 from blockshake.dynamics.synthetic_motion import SyntheticMotion
 from blockshake.errors import InputError, faults_of
-from blockshake.files import load_yaml, shipped_names
+from blockshake.files import AnyPath, load_yaml, shipped_names
 from blockshake.forces.seen.sight import sight_lines
 from blockshake.geometry.schema import StructureFile
 from blockshake.geometry.structure import Structure, load_structure
@@ -34,7 +33,7 @@ _SLOWEST = 50.0  # Hz; impacts and peaks of a rocking stack lie between rows tha
 _LATE = 5.0  # s of rest after a motion that need no remark
 
 
-def check(source: str | PathLike[str] | Structure | GroundMotion, baseline: str | float = AUTO) -> str:
+def check(source: AnyPath | Structure | GroundMotion, baseline: str | float = AUTO) -> str:
     """Content of a good file as it was understood, line by line, and remarks.
 
     Parameters

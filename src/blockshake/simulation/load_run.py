@@ -1,7 +1,6 @@
 """Reading a run file back: its Dataset, checked, and the structure that it holds."""
 
 import json
-from os import PathLike
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +8,7 @@ import xarray as xr
 
 from blockshake.dynamics.system import ENERGY_TERMS
 from blockshake.errors import InputError
+from blockshake.files import AnyPath
 from blockshake.geometry.schema import AXES, QUATERNION
 from blockshake.geometry.structure import Structure, build_structure
 from blockshake.interrupts import delayed_interrupts
@@ -21,10 +21,10 @@ _ORDERS = {"axis": AXES, "quaternion": QUATERNION, "term": ENERGY_TERMS}
 
 
 # a run file, or what `simulate` returns
-RunSource = str | PathLike[str] | xr.Dataset
+RunSource = AnyPath | xr.Dataset
 
 
-def load_run(source: RunSource, meshes: str | PathLike[str] | None = None) -> tuple[xr.Dataset, Structure]:
+def load_run(source: RunSource, meshes: AnyPath | None = None) -> tuple[xr.Dataset, Structure]:
     """Run of `simulate`, until the time that it reached, with its structure.
 
     Parameters

@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Mapping
-from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,7 +16,7 @@ from blockshake.dynamics.load_motion import MotionSource, load_motion, plain_att
 from blockshake.dynamics.motion import PITCH, GroundMotion, ground_motion
 from blockshake.dynamics.system import FINISHED, Status
 from blockshake.errors import Argument, InputError
-from blockshake.files import history
+from blockshake.files import AnyPath, history
 from blockshake.geometry.overlap import depths_of_pairs
 from blockshake.geometry.rotations import rotate_into
 from blockshake.geometry.structure import START_TOLERANCE, Structure, StructureSource, load_structure
@@ -43,7 +42,7 @@ def simulate(
     duration: float | None = None,
     output_rate: float | None = None,
     accelerometers: bool = True,
-    checkpoint: str | PathLike[str] | None = None,
+    checkpoint: AnyPath | None = None,
     scale: float = 1.0,
 ) -> xr.Dataset:
     """Simulate one structure under one motion.
@@ -186,11 +185,7 @@ class _SetUp(NamedTuple):
             "structure_file": file.model_dump_json(),
             "motion_scale": 1.0,
             "motion_synthetic": 0,
-            **{
-                f"motion_{name}": value
-                for name, value in plain_attributes(motion.attributes).items()
-                if name != "history"
-            },
+            **{f"motion_{name}": value for name, value in plain_attributes(motion.attributes).items()},
             "parameters": json.dumps(
                 effective_parameters(self.structure, self.model, self.numerical), sort_keys=True
             ),

@@ -1,7 +1,6 @@
 """A run as moving pictures: its blocks in elevation or in parallel projection, as GIF or MP4."""
 
 import logging
-from os import PathLike
 from pathlib import Path
 
 import matplotlib
@@ -14,7 +13,7 @@ from PIL import Image
 from scipy.spatial.transform import Rotation
 
 from blockshake.errors import Argument, InputError
-from blockshake.files import check_output, replacing
+from blockshake.files import AnyPath, check_output, replacing
 from blockshake.pages.drawing import DARK_GREY, STYLE
 from blockshake.pages.scene.bodies import body_colors
 from blockshake.pages.scene.projection import VIEWS, Scene
@@ -45,18 +44,18 @@ def _check_suffix(path):
 
 def animate(
     run: RunSource,
-    output: str | PathLike[str],
+    output: AnyPath,
     view: str = "front",
     magnification: float = 1.0,
     speed: float = 1.0,
-    meshes: str | PathLike[str] | None = None,
+    meshes: AnyPath | None = None,
 ) -> Path:
     """Write a run as moving pictures, atomically; progress goes to the log.
 
     Parameters
     ----------
-    run : str, path or xarray.Dataset
-        A run file, or what `blockshake.simulate` returns.
+    run, meshes
+        Of `load_run`.
     output : str or path
         GIF, or MP4 where ffmpeg is installed, by the suffix.
     view : str
@@ -66,13 +65,6 @@ def animate(
         it is.
     speed : float
         Seconds of the run in a second of the animation.
-    meshes : str or path, optional
-        Folder of the structure's meshes; by default that of the run file, or the current one.
-
-    Returns
-    -------
-    Path
-        ``output``.
 
     Raises
     ------

@@ -1,11 +1,10 @@
 """A run in other programs' formats, chosen by the suffix of the file."""
 
 import logging
-from os import PathLike
 from pathlib import Path
 
 from blockshake.errors import InputError
-from blockshake.files import check_output
+from blockshake.files import AnyPath, check_output
 from blockshake.simulation.load_run import RunSource, load_run
 from blockshake.simulation.run_histories import run_histories
 from blockshake.views.gltf import write_glb
@@ -17,29 +16,12 @@ _log = logging.getLogger(__name__)
 FORMATS = {".csv": "tables", ".vtkhdf": "ParaView", ".glb": "glTF"}
 
 
-def export(
-    run: RunSource, output: str | PathLike[str], meshes: str | PathLike[str] | None = None
-) -> list[Path]:
-    """Write a run in another program's format, one of `FORMATS` by the suffix, atomically.
+def export(run: RunSource, output: AnyPath, meshes: AnyPath | None = None) -> list[Path]:
+    """Write a run in another program's format, one of `FORMATS` by the suffix of ``output``, atomically.
 
-    Parameters
-    ----------
-    run : str, path or xarray.Dataset
-        A run file, or what `blockshake.simulate` returns.
-    output : str or path
-        ``.csv``: tidy tables; ``.vtkhdf``: for ParaView; ``.glb``: glTF with motion.
-    meshes : str or path, optional
-        Folder of the structure's meshes; by default that of the run file, or the current one.
-
-    Returns
-    -------
-    list of Path
-        The files, some of them beside ``output``. A remark of the log says where places count from, if not from 0.
-
-    Raises
-    ------
-    InputError
-        No run, a mesh that is not found, another suffix, or a file that cannot be written.
+    ``run`` and ``meshes`` are those of `load_run`. The files are returned, some of them beside ``output``; a remark of
+    the log says where places count from, if not from 0. Errors are those of `load_run`, another suffix, and a file that
+    cannot be written.
     """
     path = check_output(output)
     suffix = path.suffix.lower()

@@ -1,7 +1,6 @@
 """One run over time: drift of its blocks, forces and uplift of its joints, energy and the audit's residual."""
 
 import textwrap
-from os import PathLike
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +9,7 @@ from matplotlib import colormaps
 from matplotlib.figure import Figure
 
 from blockshake.dynamics.system import ENERGY_TERMS
-from blockshake.files import check_output
+from blockshake.files import AnyPath, check_output
 from blockshake.pages.drawing import (
     BLACK,
     BLUE,
@@ -62,27 +61,12 @@ class _Panel(NamedTuple):
         return self.kind is not None and self.values.sizes[self.kind] > len(_COLORS)
 
 
-def plot(
-    run: RunSource, output: str | PathLike[str] | None = None, meshes: str | PathLike[str] | None = None
-) -> Figure:
+def plot(run: RunSource, output: AnyPath | None = None, meshes: AnyPath | None = None) -> Figure:
     """Draw a run: one panel a quantity over the same time.
 
-    Parameters
-    ----------
-    run : str, path or xarray.Dataset
-        A run file, or what `blockshake.simulate` returns.
-    output : str or path, optional
-        PNG, PDF or SVG to write, by the suffix.
-    meshes : str or path, optional
-        Folder of the structure's meshes; by default that of the run file, or the current one.
+    ``run`` and ``meshes`` are those of `load_run`; ``output`` is a PNG, PDF or SVG to write, by the suffix. Errors
+    are those of `load_run`, and another suffix.
 
-    Raises
-    ------
-    InputError
-        No run, a mesh that is not found, or another suffix.
-
-    Notes
-    -----
     Drift of every block that is not driven, along y only where it is a tenth of that along x; displacement transducers,
     where there are any; joints that had a face at the start, without the peaks of their impacts; energy, the potential
     one since the start. More than seven blocks, transducers or joints are a map: one row each, the value a colour.

@@ -1,5 +1,6 @@
 """The project's own motion file: a CSV with ``time_s`` and columns of one kind, in SI."""
 
+import contextlib
 import csv
 import io
 from pathlib import Path
@@ -79,22 +80,17 @@ def motion_of_arrays(arrays, where):
     if not hasattr(arrays, "keys"):
         raise InputError(where, "", "expected a name, a path, or arrays by the names of columns")
     names = list(arrays.keys())  # of a table too, which is no mapping
-    kind, columns = _check_header(names, where), {}
-    rows = len(np.atleast_1d(arrays["time_s"]))
-    for name in names:
-        try:
-            columns[name] = np.array(arrays[name], dtype=float)
-        except (TypeError, ValueError):
-            raise InputError(where, name, "expected an array of numbers") from None
-        if columns[name].shape != (rows,) or rows < 2:
-            wrong = f"expected {max(rows, 2)} numbers, one a row, found an array of {columns[name].shape}"
-            raise InputError(where, name, wrong)
-        if not np.isfinite(columns[name]).all():
-            row = int(np.argmin(np.isfinite(columns[name])))
-            raise InputError(
-                where, f"row {row}, {name}", f"expected a finite number, found {columns[name][row]}"
-            )
-    return *_checked_rows(columns, range(rows), where, "row"), kind
+    kind = _check_header(names, where)
+    try:
+        values = np.array([np.asarray(arrays[name], dtype=float) for name in names])
+    except (TypeError, ValueError):  # texts, or lengths that differ
+        values = np.empty(0)
+    if values.ndim != 2 or values.shape[1] < 2:
+        raise InputError(where, "", "expected arrays of at least two numbers, all of one length")
+    for name, row in ((names[column], row) for column, row in np.argwhere(~np.isfinite(values))):
+        raise InputError(where, f"row {row}, {name}", "expected a finite number")
+    columns = dict(zip(names, values, strict=True))
+    return *_checked_rows(columns, range(values.shape[1]), where, "row"), kind
 
 
 def _checked_rows(columns, lines, where, row):
@@ -170,17 +166,12 @@ def write_motion_csv(motion, path):
 def kept_attributes(path, text):
     """Attributes that `write_motion_csv` left beside a file of this text; none where the text is another."""
     beside = Path(f"{path}{METADATA}")
-    try:
+    with contextlib.suppress(InputError, AttributeError, KeyError):
         kept = load_json(beside) if beside.is_file() else {}
-        if kept.get("csv") != content_digest(text.encode()):
-            return {}
-        return {
-            str(name): value
-            for name, value in kept["attributes"].items()
-            if isinstance(value, (str, int, float))
-        }
-    except (InputError, AttributeError, KeyError):
-        return {}
+        if kept.get("csv") == content_digest(text.encode()):
+            attributes = kept["attributes"].items()
+            return {name: value for name, value in attributes if isinstance(value, (str, int, float))}
+    return {}
 
 
 def _at_rows(breaks, c, order):

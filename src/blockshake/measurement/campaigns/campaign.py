@@ -1,7 +1,6 @@
 """Campaigns of measured tests: the list of tests and their marker readings."""
 
 from dataclasses import dataclass
-from os import PathLike
 from os.path import isfile  # false, not an error, for a name that no file can have
 from pathlib import Path
 from typing import Annotated, Literal
@@ -11,7 +10,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from blockshake.dynamics.baseline import AUTO, Baseline
 from blockshake.errors import InputError
-from blockshake.files import load_yaml, shipped_names
+from blockshake.files import AnyPath, load_yaml, shipped_names
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.clocks import from_command, on_one_clock
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
@@ -135,7 +134,7 @@ class Campaign(Shown):
         return {name: test for name, test in self.tests.items() if test.role == "sealed"}
 
 
-def load_campaign(folder: str | PathLike[str]) -> Campaign:
+def load_campaign(folder: AnyPath) -> Campaign:
     """Campaign of a folder, its test files found but not yet read.
 
     Raises

@@ -4,14 +4,13 @@ import csv
 import io
 from collections.abc import Mapping
 from dataclasses import dataclass
-from os import PathLike
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from blockshake.errors import InputError
-from blockshake.files import read_text, write_text
+from blockshake.files import AnyPath, read_text, write_text
 from blockshake.study.sampling.correlation_control import arrange
 from blockshake.study.sampling.correlation_target import check_correlation, load_correlation
 from blockshake.study.sampling.distributions import TABLE_2, known_as, load_distributions
@@ -93,7 +92,7 @@ def draw_samples(
     size: int = 50,
     seed: int = 1,
     distributions: Mapping[str, Any] = TABLE_2,
-    correlation: pd.DataFrame | str | PathLike[str] | None = None,
+    correlation: pd.DataFrame | AnyPath | None = None,
     stratum: str = "median",
     kind: str = "pearson",
     effort: int = DEFAULT_EFFORT,
