@@ -377,10 +377,7 @@ def write_dataset(path, dataset, decimals=None):
 
 
 def history(before, words):
-    """The attribute ``history`` of a file (CF-1.11, section 2.6.2): a line more behind what it was made from.
-
-    The recommended time of day is left out: the same input gives the same bytes.
-    """
+    """The attribute ``history`` of a file (CF-1.11, section 2.6.2), a line longer; without a date, for equal bytes."""
     return "\n".join(filter(None, [before, f"blockshake {__version__} {words}"]))
 
 

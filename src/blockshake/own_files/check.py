@@ -40,8 +40,7 @@ def check(source: AnyPath | Structure | GroundMotion, baseline: str | float = AU
     ----------
     source : str, path, Structure or GroundMotion
         A structure, a motion, a campaign, a study's configuration, the map of an import or the settings of a virtual
-        campaign, by file, folder or shipped name; or what `blockshake.load_structure` and `blockshake.load_motion`
-        return.
+        campaign, by file, folder or shipped name; or a loaded structure or motion.
     baseline : str or float
         Baseline correction of a motion, see `load_motion`; the other files name their own.
 

@@ -19,19 +19,8 @@ def has_fine_record(structure):
 def check_limits(structure, model, time_step, duration, output_rate, fine, in_memory):
     """Refuse a run that cannot end, cannot be held, or is not of its model.
 
-    Parameters
-    ----------
-    structure : Structure
-        With the parameters of the run.
-    model : str
-    time_step, duration : float
-        [s]
-    output_rate : float
-        [Hz]
-    fine : bool
-        Whether sensors are read from a record at `FINE_RATE`.
-    in_memory : bool
-        Whether that record is held in memory, not on disk.
+    The structure has the parameters of the run; ``time_step`` and ``duration`` [s], ``output_rate`` [Hz]; ``fine``:
+    sensors are read from a record at `FINE_RATE`, which is held in memory or on disk.
 
     Raises
     ------

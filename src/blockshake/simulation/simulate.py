@@ -104,17 +104,8 @@ def simulate_to_file(
     The run goes on from ``PATH.checkpoint`` if it was cut short, with the rows in ``PATH.checkpoint.rows``; both are
     taken away once the run file is whole.
 
-    Parameters
-    ----------
-    path : str or path
-        To write, whole or not at all: what `simulate` returns, to the bit.
-    structure, motion, model, parameters, time_step, duration, output_rate
-        The same arguments as those of `simulate`.
-
-    Raises
-    ------
-    InputError
-        Errors of `simulate`; or the file cannot be written.
+    The file at ``path`` is written whole or not at all, and holds what `simulate`, whose arguments the others are,
+    returns, to the bit. Errors are those of `simulate`, and a file that cannot be written.
     """
     of = _set_up(
         structure, motion, model, parameters, time_step, duration, output_rate, accelerometers=True, in_memory=False

@@ -97,15 +97,7 @@ def animate(
 def magnified(run, structure, magnification):
     """Poses with the motion against the base magnified.
 
-    Parameters
-    ----------
-    run, structure : xarray.Dataset, Structure
-    magnification : float
-
-    Returns
-    -------
-    position, orientation : float64 arrays, shape (n_times, n_bodies, 3) and (n_times, n_bodies, 4)
-        Inertial frame [m]; unit quaternions, body to world.
+    Positions (n_times, n_bodies, 3), inertial frame [m], and unit quaternions (n_times, n_bodies, 4), body to world.
 
     Notes
     -----

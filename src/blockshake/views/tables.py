@@ -12,20 +12,11 @@ _UNITS = {"1": "", "m": "_m", "m s-1": "_m_s", "m s-2": "_m_s2", "rad s-1": "_ra
 
 
 def write_tables(path, run, histories):
-    """Write the tables of a run beside each other, all or none.
+    """Write the tables of a run beside each other, all or none; the files are returned.
 
-    Parameters
-    ----------
-    path : str or path
-        ``run.csv`` gives ``run-bodies.csv``, ``run-joints.csv``, ``run-markers.csv``, ``run-energy.csv``,
-        ``run-accelerometers.csv`` and ``run-transducers.csv``, those without a row left out.
-    run, histories : xarray.Dataset
-        From `load_run` and `run_histories`.
-
-    Returns
-    -------
-    list of path
-        The files.
+    ``run.csv`` gives ``run-bodies.csv``, ``run-joints.csv``, ``run-markers.csv``, ``run-energy.csv``,
+    ``run-accelerometers.csv`` and ``run-transducers.csv``, those without a row left out. ``run`` and ``histories`` are
+    from `load_run` and `run_histories`.
     """
     base = Path(path)
     tables = {

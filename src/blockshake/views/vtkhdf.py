@@ -19,19 +19,10 @@ _INT, _REAL = "i8", "f4"
 
 
 def write_vtkhdf(path, run, histories, structure):
-    """Write the blocks and the joints of a run as VTKHDF, both or none.
+    """Write the blocks and the joints of a run as VTKHDF, both or none; the files are returned.
 
-    Parameters
-    ----------
-    path : str or path
-        ``run.vtkhdf`` holds the blocks; the joints go to ``run-joints.vtkhdf`` beside it, where there are any.
-    run, histories, structure : xarray.Dataset, xarray.Dataset, Structure
-        From `load_run` and `run_histories`.
-
-    Returns
-    -------
-    list of path
-        The files.
+    ``run.vtkhdf`` holds the blocks; the joints go to ``run-joints.vtkhdf`` beside it, where there are any. ``run`` and
+    ``histories`` are from `load_run` and `run_histories`.
 
     Notes
     -----

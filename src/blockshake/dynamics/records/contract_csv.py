@@ -63,19 +63,9 @@ def read_motion_csv(text, where):
 
 
 def motion_of_arrays(arrays, where):
-    """Time, columns and kind, as of `read_motion_csv`, of arrays by the names of a motion file's columns.
+    """Time, columns and kind, as of `read_motion_csv`, of arrays (n_rows,) by the names of a motion file's columns.
 
-    Parameters
-    ----------
-    arrays : mapping of str to array, shape (n_rows,)
-        Or a table that gives its columns by name, as of pandas.
-    where : str
-        What a message names.
-
-    Raises
-    ------
-    InputError
-        Of `read_motion_csv`, with the number of a row from 0 in place of a line.
+    A table of pandas will do. Errors are those of `read_motion_csv`, with the number of a row from 0 for a line.
     """
     if not hasattr(arrays, "keys"):
         raise InputError(where, "", "expected a name, a path, or arrays by the names of columns")

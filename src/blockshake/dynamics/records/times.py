@@ -16,20 +16,8 @@ _FEWEST_ROWS = 20  # below it a table may be sparse on purpose
 def check_times(time, lines, where, name, row="line"):
     """Refuse times that do not increase, and gaps in a series that is even otherwise, which no line may bridge.
 
-    Parameters
-    ----------
-    time : float64 array, shape (n_rows,)
-        [s]
-    lines : list of int
-        Line of every row in the file.
-    where, name : str
-        File and column that a message names.
-    row : str
-        What ``lines`` count.
-
-    Raises
-    ------
-    InputError
+    ``time`` (n_rows,) [s]; ``lines``: line of every row in the file ``where``, or another number that ``row`` names;
+    ``name`` of the column.
     """
     steps = np.diff(time)
     back = np.flatnonzero(steps <= 0.0)
