@@ -19,7 +19,7 @@ from blockshake.dynamics.records.knet import is_knet, read_knet
 from blockshake.dynamics.records.record import chosen_records
 from blockshake.dynamics.records.smc import is_smc, read_smc
 from blockshake.dynamics.synthetic_motion import load_synthetic, synthesise
-from blockshake.errors import InputError
+from blockshake.errors import Argument, InputError
 from blockshake.files import AnyPath, named_file, read_foreign_text
 
 # content decides; the ending only where a broken file of that format should say what it lacks
@@ -143,7 +143,7 @@ def _motion_of_rows(rows, source, form):
 def _check_no_channels(channels, path):
     if channels:
         raise InputError(
-            path, "channels", "expected of a record; columns of a table are chosen with its unit"
+            Argument("channels"), "", f"expected for a record, or with --unit for a table; {path} is neither"
         )
 
 

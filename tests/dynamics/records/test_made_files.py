@@ -336,7 +336,7 @@ TABLES = [
        f"column '{name}': expected the unit of time that was given; the header has another one, of time")
       for name in ("t_s", "time_s", "Zeit/s", "t s", "time - min")),
     ("t.csv", table(), ("--time-step", "0.02", "--column", "x=a", "--unit", "g"),
-     "--time-step: 0.02: expected a table without times; 't' counts as they do: name it, and its unit"),
+     "--time-step: 0.02: expected a table without times; 't' counts as they do: --time and --time-unit"),
     ("t.csv", table(), ("--time-step", "0.01"), "--unit: expected for a table"),
     ("t.csv", table(), ("--unit", "g"), "--column: expected for a table, or --time-step"),
     ("m.csv", "time_s,acceleration_x\n" + "".join(f"{row / 100 + 3 * (row > 99)},{row % 7}\n" for row in range(200)),
@@ -382,7 +382,7 @@ def test_a_record_says_what_was_checked_and_assumed(tmp_path):
 
 def test_a_channel_is_of_one_axis(tmp_path):
     path = write(tmp_path, "b.v2", csmip(CM, channels=2))
-    with pytest.raises(InputError, match="--column: y=180 deg: expected every channel for one axis"):
+    with pytest.raises(InputError, match="channels: y=180 deg: expected every channel for one axis"):
         load_motion(path, channels={"x": "2", "y": "180 deg"})
 
 
@@ -391,10 +391,7 @@ def test_channels_are_of_records_alone(name, tmp_path, capsys):
     if name == "m.csv":
         name = str(write(tmp_path, name, "time_s,acceleration_x\n0,0\n1,1\n"))
     assert main(["convert-motion", name, "--column", "y=1", "--output", str(tmp_path / "o.csv")]) == 2
-    assert (
-        "channels: expected of a record; columns of a table are chosen with its unit"
-        in capsys.readouterr().err
-    )
+    assert "--column: expected for a record, or with --unit for a table" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

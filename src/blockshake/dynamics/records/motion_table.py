@@ -122,7 +122,7 @@ def _check_untimed(table, columns, time_step):
         if time is None or len(time) < 2 or not (np.diff(time) > 0.0).all():
             continue
         if not np.isclose((time[-1] - time[0]) / (len(time) - 1), [1.0, time_step], rtol=ROUNDING).any():
-            wrong = f"expected a table without times; '{name}' counts as they do: name it, and its unit"
+            wrong = f"expected a table without times; '{name}' counts as they do: --time and --time-unit"
             raise InputError(Argument("time_step"), f"{time_step:g}", wrong)
 
 
@@ -136,11 +136,11 @@ def _series(source, layout, time_step, given):
     for count, step in _COUNT_AND_STEP.findall(text):
         counts, steps = [*counts, float(count)], [*steps, _seconds(step, "")]
     for stated, actual, name in (
-        (steps, time_step, "time_step"),
+        (steps, time_step, "--time-step"),
         (counts, len(values), "number of values"),
     ):
         for one in stated:
-            if abs(one - actual) > ROUNDING * actual * (name == "time_step"):
+            if abs(one - actual) > ROUNDING * actual * (name == "--time-step"):
                 raise InputError(source, name, f"expected {one:g}, as the file says, found {actual:g}")
     named = [(stated, known_unit(stated)) for stated in _UNIT.findall(header)]
     for line in header.split("\n"):
@@ -148,7 +148,7 @@ def _series(source, layout, time_step, given):
         named.append((line, unit_of_name(line.rstrip(" :.,;"), own)))
     for stated, unit in named:
         if unit and unit != given and unit[0] in ("acceleration", given[0]):
-            raise InputError(source, "unit", f"expected '{stated}', as the file says")
+            raise InputError(source, "--unit", f"expected '{stated}', as the file says")
     return {"x": float(given[1]) * values}, width
 
 
