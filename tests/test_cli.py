@@ -164,7 +164,7 @@ def test_an_interrupt_before_a_run_has_begun_is_said_too(monkeypatch, capsys):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("blockshake.own_files.check.check_file", interrupted)
+    monkeypatch.setattr("blockshake.own_files.check.check", interrupted)
     assert main(["check", "configuration-1"]) == 130
     assert capsys.readouterr().err == "blockshake: interrupted\n"
 

@@ -61,6 +61,11 @@ def run(installed, tmp_path):
     return started
 
 
+def test_editors_find_types_of_an_installed_package(installed):
+    for name in ("py.typed", "__init__.pyi"):
+        assert (installed / "blockshake" / name).read_bytes() == (PACKAGE / name).read_bytes()
+
+
 def test_commands_find_what_is_shipped(run, tmp_path):
     assert "3 blocks" in run("blockshake", "check", "configuration-1", "alkion").stdout
     assert run("blockshake", "sample", "--size", 10, "--output", "design.csv").returncode == 0

@@ -10,12 +10,14 @@ import time
 from pathlib import Path
 
 from blockshake import __version__
-from blockshake.errors import BAD_INPUT, INTERRUPTED, InputError
+from blockshake.errors import BAD_INPUT, INTERRUPTED, Argument, InputError
 from blockshake.files import check_output, parse_yaml, write_json
 from blockshake.own_files.commands import add_baseline, add_data_commands
 from blockshake.simulation.models import MODELS
 
 NUMERICAL_FAILURE = 3
+# of arguments that have another name
+_OPTIONS = {"parameters": "--set", "channels": "--column", "columns": "--column"}
 UNREAD = 141  # whoever reads the output has gone, as after `blockshake parameters | head -1`
 
 
@@ -68,11 +70,19 @@ def _run(arguments):
         options = _parser().parse_args(arguments)
         return options.run(options) or 0
     except InputError as error:
-        print(f"blockshake: {error}", file=sys.stderr)
+        print(f"blockshake: {_with_option(error)}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt as interrupt:
         print(f"blockshake: {str(interrupt) or 'interrupted'}", file=sys.stderr)
         return INTERRUPTED
+
+
+def _with_option(error):
+    """An error, which names a command's option where the function's names an argument."""
+    if not isinstance(error.where, Argument):
+        return error
+    option = _OPTIONS.get(error.where, f"--{error.where.replace('_', '-')}")
+    return InputError(option, error.key, error.expected)
 
 
 def _is_read(stream):
@@ -295,44 +305,27 @@ def _show_progress():
 
 
 def _plot(options):
-    output = check_output(options.output or Path(options.file).with_suffix(".png"))
-    from blockshake.pages.drawing import check_picture, save_picture
-    from blockshake.simulation.load_run import load_run
-    from blockshake.simulation.run_histories import run_histories
-    from blockshake.views.figure import plot_run
+    from blockshake.views.figure import plot
 
-    check_picture(output)
-    run, structure = load_run(options.file, options.meshes)
-    save_picture(output, plot_run, run, run_histories(run, structure))
+    output = options.output or Path(options.file).with_suffix(".png")
+    plot(options.file, output, options.meshes)
     print(output)
 
 
 def _animate(options):
-    output = check_output(options.output or Path(options.file).with_suffix(".gif"))
-    from blockshake.simulation.load_run import load_run
-    from blockshake.views.animation import animate_run, check_animation
+    from blockshake.views.animation import animate
 
-    check_animation(output)
     _show_progress()
-    run, structure = load_run(options.file, options.meshes)
-    animate_run(output, run, structure, options.view, options.magnification, options.speed)
-    print(output)
+    output = options.output or Path(options.file).with_suffix(".gif")
+    given = options.view, options.magnification, options.speed, options.meshes
+    print(animate(options.file, output, *given))
 
 
 def _export(options):
-    from blockshake.simulation.load_run import load_run
-    from blockshake.simulation.run_histories import run_histories
-    from blockshake.views.export import check_export, export_run
-    from blockshake.views.local_origin import local_origin
+    from blockshake.views.export import export
 
-    check_export(options.output)
-    run, structure = load_run(options.file, options.meshes)
-    for file in export_run(options.output, run, run_histories(run, structure), structure):
-        print(file)
-    origin = local_origin(run)
-    if origin.any() and Path(options.output).suffix.lower() != ".csv":
-        words = "m, as 32 bits are too coarse so far from the origin"
-        print(f"  remark: places count from {origin.tolist()} {words}")
+    _show_progress()
+    print(*export(options.file, options.output, options.meshes), sep="\n")
 
 
 def _sample(options):
@@ -420,14 +413,14 @@ def _extend_study(options):
 
 
 def _check(options):
-    from blockshake.own_files.check import check_file
+    from blockshake.own_files.check import check
 
     if options.picture:
         _draw_structure(options.files, options.picture)
     wrong = 0
     for file in options.files:
         try:
-            print(f"{file}: {check_file(file, options.baseline)}", flush=True)
+            print(f"{file}: {check(file, options.baseline)}", flush=True)
         except InputError as error:
             print(f"blockshake: {error}", file=sys.stderr)
             wrong += 1

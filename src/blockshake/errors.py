@@ -1,18 +1,23 @@
 """The one error that a user can mend, worded in one line."""
 
 import contextlib
+from os import PathLike
 
 BAD_INPUT, INTERRUPTED = 2, 130  # exit codes; the second by Ctrl-C
 _LONGEST = 1000  # characters of a line that someone reads
 
 
+class Argument(str):
+    """Name of a function's argument at fault, the place of an `InputError`; a command line says its option."""
+
+
 class InputError(ValueError):
-    """Bad input: names the file, the key and what was expected.
+    """Bad input: names the file or the argument, the key and what was expected.
 
     Parameters
     ----------
-    where : str
-        File or command-line option at fault.
+    where : str, path or Argument
+        File, command-line option or argument of a function at fault.
     key : str
         Dotted key inside it; empty when the whole file is at fault.
     expected : str
@@ -24,8 +29,9 @@ class InputError(ValueError):
     escape, so that the words are one line, and the end of a very long line is left out.
     """
 
-    def __init__(self, where, key, expected):
-        self.where, self.key, self.expected = str(where), str(key), str(expected)
+    def __init__(self, where: str | PathLike[str], key: str, expected: str) -> None:
+        self.where = where if isinstance(where, Argument) else str(where)
+        self.key, self.expected = str(key), str(expected)
         place = f"{self.where}: {self.key}" if self.key else self.where
         super().__init__(one_line(f"{place}: {self.expected}"))
 

@@ -12,9 +12,11 @@ from pathlib import Path
 
 import yaml
 
+from blockshake import __version__
 from blockshake.errors import InputError
 from blockshake.interrupts import delayed_interrupts
 
+AnyPath = str | os.PathLike[str]
 PACKAGE = Path(__file__).parent
 _INSTALLED = PACKAGE / "shipped"
 # what ships beside the package: a checkout's own folders, or the copy of them in an installed package
@@ -372,6 +374,11 @@ def write_dataset(path, dataset, decimals=None):
                 encoding[name] |= {"dtype": "int32", "scale_factor": scale, "_FillValue": _NO_NUMBER}
     with replacing(path) as temporary, delayed_interrupts():
         dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding, unlimited_dims=[])
+
+
+def history(before, words):
+    """The attribute ``history`` of a file (CF-1.11, section 2.6.2), a line longer; without a date, for equal bytes."""
+    return "\n".join(filter(None, [before, f"blockshake {__version__} {words}"]))
 
 
 def content_digest(*values):

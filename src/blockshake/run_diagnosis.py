@@ -4,15 +4,24 @@ import json
 import os
 import shutil
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from blockshake.files import HOME, PACKAGE, check_output
+from blockshake.files import HOME, PACKAGE, AnyPath, check_output
 from blockshake.own_files.run_workflow import cores_of, run_workflow, workflow_command
 from blockshake.working_folder import hold
+
+if TYPE_CHECKING:
+    from blockshake.diagnosis.verdict.verdict import Verdict
 
 _ALWAYS_MADE = ("verdict.json", "decision.json", "parity.json", "evidence.nc")
 
 
-def diagnose(campaign, output, effort="standard", cores=None):
+def diagnose(
+    campaign: AnyPath,
+    output: AnyPath,
+    effort: str = "standard",
+    cores: int | None = None,
+) -> "Verdict":
     """Show what simulations of measured tests get wrong, name the cause, extend the model and measure the gain.
 
     Simulates by the workflow's rules, in ``results`` of the checkout or, of an installed package, of the current

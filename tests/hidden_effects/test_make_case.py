@@ -27,7 +27,7 @@ from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import EFFECTS, with_effect
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.instruments import Instruments
-from blockshake.own_files.check import check_file
+from blockshake.own_files.check import check
 from blockshake.simulation.simulate import simulate
 
 STRUCTURE = structure_file("two-blocks")
@@ -77,7 +77,7 @@ CLASSES = [(), *((name,) for name in (*EFFECTS, *OUTSIDE)), ("reduced-bearing", 
 @pytest.mark.parametrize("names", CLASSES)
 def test_a_campaign_of_every_class_is_in_order_and_says_nothing(names, short, tmp_path):
     folder = _make(tmp_path, LS_DEM_SEED, *names)
-    check_file(folder / "campaign")
+    check(folder / "campaign")
     truth = _truth(folder)
     assert tuple(cause["name"] for cause in truth["causes"]) == names
     # the pads of a brake hang on springs of the table

@@ -18,7 +18,7 @@ from blockshake.errors import InputError
 from blockshake.files import load_yaml
 from blockshake.geometry.schema import StructureFile
 from blockshake.measurement.campaigns.campaign import CampaignFile
-from blockshake.own_files.check import check_file
+from blockshake.own_files.check import check
 from blockshake.own_files.import_map import ImportMap
 from blockshake.study.config import StudyConfig, load_config
 from blockshake.study.sampling.latin_hypercube import draw_design
@@ -35,9 +35,9 @@ ELSEWHERE = (
 )
 KINDS = {
     "study": (StudyConfig, "study.yaml", load_config),
-    "structure": (StructureFile, "structure.yaml", check_file),
-    "campaign": (CampaignFile, "campaign/campaign.yaml", check_file),
-    "import": (ImportMap, "import.yaml", check_file),
+    "structure": (StructureFile, "structure.yaml", check),
+    "campaign": (CampaignFile, "campaign/campaign.yaml", check),
+    "import": (ImportMap, "import.yaml", check),
     "virtual": (VirtualCampaign, "virtual.yaml", lambda path: load_settings(path, "structure.yaml")),
 }
 SHARED = Path(os.environ.get("BLOCKSHAKE_SHARED", Path(__file__).parents[3] / "shared"))
@@ -207,9 +207,7 @@ def test_a_command_that_is_not_at_hand_is_remarked(tmp_path):
     write_files(tmp_path)
     campaign = changed(CAMPAIGN, ("tests", 0, "motion"), "nothing.csv")
     (tmp_path / "campaign" / "campaign.yaml").write_text(yaml.safe_dump(campaign))
-    assert "nothing.csv is not at hand, without which there is no diagnosis" in check_file(
-        tmp_path / "campaign"
-    )
+    assert "nothing.csv is not at hand, without which there is no diagnosis" in check(tmp_path / "campaign")
 
 
 @pytest.mark.skipif(not (SHARED / "cases").is_dir(), reason=f"no cases in {SHARED} (set BLOCKSHAKE_SHARED)")
@@ -217,8 +215,8 @@ def test_the_case_of_a_correlation_s_names(tmp_path, monkeypatch):
     shutil.copytree(SHARED / "cases" / "correlation-names", tmp_path / "case")
     monkeypatch.chdir(tmp_path / "case")
     with pytest.raises(InputError, match=r"correlation\.csv: friction\.granite\.steel: expected one of"):
-        check_file("study.yaml")
-    check_file("study-2.yaml")
+        check("study.yaml")
+    check("study-2.yaml")
     design = draw_design(load_config("study-2.yaml").ensemble.model_dump())
     assert design.target.to_numpy()[0, 1] == 0.5
     assert abs(design.correlation.to_numpy()[0, 1] - 0.5) < 0.01

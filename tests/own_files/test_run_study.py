@@ -169,7 +169,7 @@ def test_another_folder_gets_the_study_with_paths_from_there(folder, workflow, c
         (["nowhere.yaml"], "nowhere.yaml"),
         (
             ["study.yaml", "--case", "middle"],
-            "study.yaml: --case: expected one of weak, strong, not 'middle'",
+            "study.yaml: case: expected one of weak, strong, not 'middle'",
         ),
         (["study.yaml", "--cores", "0"], "expected a whole number from 1, not 0"),
         (["own/block.yaml"], "own/block.yaml"),

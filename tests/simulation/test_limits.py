@@ -100,5 +100,5 @@ def test_a_motion_whose_name_is_not_utf_8_is_refused(tmp_path):
     """A run file holds the name."""
     path = tmp_path / os.fsdecode(b"m\xff.csv")
     path.write_text("time_s,acceleration_x\n0,0\n1,0.1\n2,0\n")
-    with pytest.raises(InputError, match=r"--motion: m\\udcff: expected a name in UTF-8"):
+    with pytest.raises(InputError, match=r"^motion: m\\udcff: expected a name in UTF-8"):
         simulate("configuration-1", path, "nscd-rigid", duration=0.01)

@@ -59,7 +59,7 @@ def test_a_pair_in_the_other_order_has_the_same_forces(leaning_run, histories):
 
 def test_a_pair_that_did_not_touch_at_the_start_has_a_place_and_no_face(leaning_run):
     run, structure = leaning_run
-    late = run.assign_coords(lower=("joint", np.array(["slab", "slab"])))
+    late = run.assign_coords(lower=("joint", np.array(["slab", "slab"])), joint=["slab-lower", "slab-upper"])
     found = run_histories(late, structure).isel(joint=1)
     assert found["joint"].item() == "slab-upper"
     for name in ("normal_force", "friction_ratio", "uplift"):

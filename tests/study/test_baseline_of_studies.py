@@ -16,7 +16,7 @@ from blockshake.files import PACKAGE
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.campaigns.campaign_folder import motion_in_folder
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
-from blockshake.own_files.check import check_file
+from blockshake.own_files.check import check
 from blockshake.study.config import StudyConfig, check_config
 from blockshake.study.ensembles.case_input import driving_motions
 from blockshake.virtual.generate import generate_campaign
@@ -55,17 +55,15 @@ def test_case_of_a_study_drives_its_models_so(baseline, start, record):
 
 def test_check_says_what_is_done_to_each_record(record, tmp_path):
     (tmp_path / "mine.yaml").write_text(yaml.safe_dump(study(record)))
-    (line,) = [line for line in check_file(tmp_path / "mine.yaml").splitlines() if "baseline" in line]
+    (line,) = [line for line in check(tmp_path / "mine.yaml").splitlines() if "baseline" in line]
     assert (
         "drift.AT2 (PEER NGA AT2); assumed: a component along x; baseline: corrected, not at rest: " in line
     )
     assert "along x it ends with 0.3 m/s at" in line
     assert "PGD 4500 to 4" in line
-    assert "\n" not in check_file(record).strip()
-    assert "baseline: corrected" in check_file(record)
-    assert "baseline: none, as asked for; the record ends with 0.3 m/s at 4500 mm" in check_file(
-        record, "none"
-    )
+    assert "\n" not in check(record).strip()
+    assert "baseline: corrected" in check(record)
+    assert "baseline: none, as asked for; the record ends with 0.3 m/s at 4500 mm" in check(record, "none")
 
 
 def test_a_motion_has_one_baseline_in_a_study(record):
@@ -93,7 +91,9 @@ def test_every_rule_with_a_motion_knows_its_baseline():
     """A change of the key reruns: it is a parameter of each rule that reads a motion."""
     files = sorted((PACKAGE.parents[1] / "workflow" / "rules").glob("*.smk"))
     rules = [rule for path in files for rule in re.split(r"^rule ", path.read_text(), flags=re.MULTILINE)[1:]]
-    named = [rule for rule in rules if re.search(r'definition\("motions"|unpack\((case|run)_files\)', rule)]
+    named = [
+        rule for rule in rules if re.search(r"motion_file,|LADDER_FILES,|unpack\((case|run)_files\)", rule)
+    ]
     assert len(named) == 6
     for rule in named:
         known = re.search(r"BASELINES|case=case_definition|runs=sample_runs|case_keys\(", rule)

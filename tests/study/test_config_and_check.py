@@ -10,7 +10,7 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE, load_yaml
 from blockshake.geometry.structure import load_structure
-from blockshake.own_files.check import check_file
+from blockshake.own_files.check import check
 from blockshake.quantities import USUAL
 from blockshake.simulation.models import MODELS, solver_of
 from blockshake.simulation.parameter_table import instances
@@ -199,11 +199,11 @@ def test_a_decimal_comma_is_named():
 
 def test_check_says_what_a_good_file_is(monkeypatch):
     monkeypatch.chdir(ROOT)
-    assert "3 blocks of 22091 kg" in check_file("configuration-1")
-    assert "9 blocks" in check_file("config/structures/configuration-3.yaml")
-    assert "3 of 0.8 x 2.4 x 1.6 m, 7364 kg, height over width 2" in check_file("configuration-1")
-    assert "a motion of 25 s, given as acceleration; peaks along x: " in check_file("alkion")
-    said = check_file("config/study.yaml")
+    assert "3 blocks of 22091 kg" in check("configuration-1")
+    assert "9 blocks" in check("config/structures/configuration-3.yaml")
+    assert "3 of 0.8 x 2.4 x 1.6 m, 7364 kg, height over width 2" in check("configuration-1")
+    assert "a motion of 25 s, given as acceleration; peaks along x: " in check("alkion")
+    said = check("config/study.yaml")
     assert said.startswith(
         "a study of 4 cases by ls-dem (50 samples), nscd-rigid (50 samples), nscd-elastic (3 to 8 samples), "
     )
@@ -213,7 +213,7 @@ def test_check_says_what_a_good_file_is(monkeypatch):
 def test_check_refuses_other_yaml(tmp_path, text):
     (tmp_path / "x.yaml").write_text(text)
     with pytest.raises(InputError, match=r"x\.yaml"):
-        check_file(str(tmp_path / "x.yaml"))
+        check(str(tmp_path / "x.yaml"))
 
 
 @pytest.mark.parametrize(
@@ -243,9 +243,7 @@ def test_check_remarks_a_structure_in_millimetres(tmp_path):
     for item in [*file["bodies"], *file["markers"], *file["accelerometers"]]:
         item["position"] = [1e3 * place for place in item["position"]]
     (tmp_path / "mm.yaml").write_text(yaml.safe_dump(file))
-    assert "block-1 is 2.4e+03 m long and weighs 7.37e+12 kg: expected m" in check_file(
-        str(tmp_path / "mm.yaml")
-    )
+    assert "block-1 is 2.4e+03 m long and weighs 7.37e+12 kg: expected m" in check(str(tmp_path / "mm.yaml"))
 
 
 def test_every_parameter_with_a_usual_range_is_remarked_beyond_it():
@@ -299,7 +297,7 @@ def motion_file(folder, values, column="acceleration_x", clock=1.0):
 )
 def test_check_remarks_a_motion_in_other_units_or_with_an_offset(tmp_path, scale, offset, remark):
     file = motion_file(tmp_path, lambda t: scale * np.sin(2.0 * np.pi * t) + offset)
-    assert remark in check_file(file)
+    assert remark in check(file)
 
 
 @pytest.mark.parametrize(
@@ -314,7 +312,7 @@ def test_check_remarks_a_motion_in_other_units_or_with_an_offset(tmp_path, scale
 )
 def test_check_remarks_any_direction_kind_and_clock(tmp_path, column, size, clock, remark):
     file = motion_file(tmp_path, lambda t: size * np.sin(2.0 * np.pi * t) * np.exp(-t), column, clock)
-    said = check_file(file)
+    said = check(file)
     assert remark in said if remark else "remark" not in said
 
 
@@ -359,7 +357,7 @@ def test_a_study_needs_markers_of_the_base_and_of_a_block(mapping, cube, tmp_pat
 def test_variables_that_no_structure_has_are_refused_but_for_table_2(mapping, cube, tmp_path):
     of_concrete = own_study(dict(mapping), tmp_path, cube, ensemble={"size": 10, "seed": 1})
     (tmp_path / "study.yaml").write_text(yaml.safe_dump(of_concrete))
-    assert "all of its samples are alike" in check_file(tmp_path / "study.yaml")
+    assert "all of its samples are alike" in check(tmp_path / "study.yaml")
     wrong = {"friction.ston.stone": {"distribution": "lognormal", "mean": 0.5, "cov": 0.1}}
     study = own_study(dict(mapping), tmp_path, cube, ensemble=stone(**wrong))
     with pytest.raises(
@@ -375,7 +373,7 @@ def test_a_study_remarks_what_its_structures_hardly_mean(mapping, cube, tmp_path
     study["output_rate"] = 5.0
     study["ensemble"]["distributions"]["materials.stone.density"]["cov"] = 1.1
     (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
-    told = check_file(tmp_path / "study.yaml")
+    told = check(tmp_path / "study.yaml")
     assert "materials.stone.density has a cov of 1.1: expected a share, 0.1 for 10 %" in told
     assert "5 rows a second miss the peaks of drifts and forces: 200 is usual" in told
     assert "materials.stone.youngs_modulus is 34.5 Pa: 1e+07 to 1e+12 Pa is usual" in told
@@ -395,7 +393,7 @@ def test_a_window_that_cuts_the_strong_motion_is_remarked(mapping, cube, tmp_pat
     study = own_study(dict(mapping), tmp_path, cube, ensemble=stone())
     study["cases"][0] |= {"duration": duration, "motion": str(tmp_path / "even.csv")}
     (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
-    told = check_file(tmp_path / "study.yaml")
+    told = check(tmp_path / "study.yaml")
     line = f"own: {duration:g} s are simulated of a motion that is strong until 4.5"
     assert (line in told) == remarked
     assert ("strong until" in told) == remarked
@@ -414,7 +412,7 @@ def test_a_variable_beyond_what_is_usual_is_remarked(mapping, cube, tmp_path):
     study = own_study(dict(mapping), tmp_path, cube, ensemble=stone())
     study["ensemble"]["distributions"]["friction.stone.stone"] = {"mean": 60.0, "cov": 0.1}
     (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
-    assert "friction.stone.stone is 59.7022: 0.05 to 1.5 is usual" in check_file(tmp_path / "study.yaml")
+    assert "friction.stone.stone is 59.7022: 0.05 to 1.5 is usual" in check(tmp_path / "study.yaml")
 
 
 def _extended(tmp_path):

@@ -1,3 +1,5 @@
+import json
+
 import numpy as np
 import pytest
 from matplotlib.animation import FFMpegWriter
@@ -5,13 +7,13 @@ from PIL import Image
 
 from blockshake.errors import InputError
 from blockshake.simulation.run_histories import run_histories
-from blockshake.views.animation import animate_run, magnified
+from blockshake.views.animation import animate, magnified
 
 
 @pytest.fixture(scope="module")
 def gif(leaning_run, tmp_path_factory):
     path = tmp_path_factory.mktemp("gif") / "run.gif"
-    animate_run(path, *leaning_run, view="3d", magnification=3.0)
+    animate(leaning_run[0], path, view="3d", magnification=3.0)
     return path
 
 
@@ -29,7 +31,7 @@ def test_a_gif_runs_in_real_time(gif):
 
 def test_a_slower_one_has_more_frames_and_the_same_bytes_again(leaning_run, tmp_path):
     for name in ("a.gif", "b.gif"):
-        animate_run(tmp_path / name, *leaning_run, speed=2.0)
+        animate(leaning_run[0], tmp_path / name, speed=2.0)
     with Image.open(tmp_path / "a.gif") as film:
         assert film.n_frames == 11
     assert (tmp_path / "a.gif").read_bytes() == (tmp_path / "b.gif").read_bytes()
@@ -52,26 +54,26 @@ def test_magnification_is_of_the_motion_against_the_base(leaning_run):
     ("path", "keys", "words"),
     [
         ("x.avi", {}, "expected a suffix of moving pictures"),
-        ("x.gif", {"view": "top"}, "--view: top: expected front or side or far side or 3d"),
-        ("x.gif", {"speed": 0.0}, "--speed: expected a positive number"),
-        ("x.gif", {"magnification": float("nan")}, "--magnification: expected a positive number"),
+        ("x.gif", {"view": "top"}, "view: top: expected front or side or far side or 3d"),
+        ("x.gif", {"speed": 0.0}, "speed: expected a positive number"),
+        ("x.gif", {"magnification": float("nan")}, "magnification: expected a positive number"),
     ],
 )
 def test_wishes_that_cannot_be_met_are_refused(leaning_run, tmp_path, path, keys, words):
     with pytest.raises(InputError, match=words):
-        animate_run(tmp_path / path, *leaning_run, **keys)
+        animate(leaning_run[0], tmp_path / path, **keys)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_an_mp4_without_ffmpeg_is_refused_in_one_line(leaning_run, tmp_path, monkeypatch):
     monkeypatch.setattr(FFMpegWriter, "isAvailable", classmethod(lambda cls: False))
     with pytest.raises(InputError, match="needs the program ffmpeg, which is not installed"):
-        animate_run(tmp_path / "x.mp4", *leaning_run)
+        animate(leaning_run[0], tmp_path / "x.mp4")
 
 
 @pytest.mark.skipif(not FFMpegWriter.isAvailable(), reason="ffmpeg is not installed")
 def test_an_mp4_is_written_where_there_is_ffmpeg(leaning_run, tmp_path):
-    animate_run(tmp_path / "x.mp4", *leaning_run)
+    animate(leaning_run[0], tmp_path / "x.mp4")
     assert (tmp_path / "x.mp4").read_bytes()[4:8] == b"ftyp"
 
 
@@ -83,8 +85,9 @@ def test_a_run_in_national_coordinates_looks_as_at_the_origin(view, leaning_run,
     for body in mapping["bodies"]:
         body["position"] = (origin + body["position"]).tolist()
     moved = run.assign(position=run["position"] + origin)
-    animate_run(tmp_path / "near.gif", run, structure, view, 3.0, 5.0)
-    animate_run(tmp_path / "far.gif", moved, structure.with_mapping(mapping), view, 3.0, 5.0)
+    moved.attrs["structure_file"] = json.dumps(mapping)
+    animate(run, tmp_path / "near.gif", view, 3.0, 5.0)
+    animate(moved, tmp_path / "far.gif", view, 3.0, 5.0)
     with Image.open(tmp_path / "near.gif") as near, Image.open(tmp_path / "far.gif") as far:
         assert near.n_frames == far.n_frames > 1
         for frame in range(near.n_frames):

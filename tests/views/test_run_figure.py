@@ -3,13 +3,12 @@ import pytest
 
 from blockshake.pages.scene.structure_picture import plot_understood
 from blockshake.simulation.run_histories import run_histories
-from blockshake.views.figure import plot_run, run_title
+from blockshake.views.figure import plot, plot_run, run_title
 
 
 @pytest.fixture(scope="module")
 def figure(leaning_run):
-    run, structure = leaning_run
-    return plot_run(run, run_histories(run, structure))
+    return plot(leaning_run[0])
 
 
 def panel(figure, start):

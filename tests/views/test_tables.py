@@ -4,7 +4,7 @@ import pytest
 
 from blockshake.errors import InputError
 from blockshake.simulation.run_histories import run_histories
-from blockshake.views.export import export_run
+from blockshake.views.export import export
 from blockshake.views.tables import write_tables
 
 
@@ -68,7 +68,6 @@ def test_sensors_have_times_of_their_own_and_no_row_after_the_end(
 
 
 def test_a_suffix_that_is_no_format_is_refused(leaning_run, tmp_path):
-    run, structure = leaning_run
     with pytest.raises(InputError, match=r"expected one of the suffixes \.csv"):
-        export_run(tmp_path / "run.vtk", run, None, structure)
+        export(leaning_run[0], tmp_path / "run.vtk")
     assert list(tmp_path.iterdir()) == []

@@ -43,6 +43,19 @@ def test_every_step_finds_its_points_and_cells(files):
                 assert len(root["CellData"][name]) == n_cells * (41 if per_step else 1)
 
 
+def test_every_body_and_joint_has_its_number_by_its_name(files, leaning_run):
+    for file, expected in zip(
+        files, (["slab", "lower", "upper"], ["slab-lower", "lower-upper"]), strict=True
+    ):
+        with netCDF4.Dataset(file) as content:
+            numbers = content["VTKHDF"]["FieldData"].variables
+            assert {name: number[:].tolist() for name, number in numbers.items()} == {
+                name: [place] for place, name in enumerate(expected)
+            }
+            for offsets in content["VTKHDF"]["Steps"]["FieldDataOffsets"].variables.values():
+                assert offsets[:].tolist() == [0] * 41
+
+
 def test_points_are_the_corners_of_the_turned_blocks(files, leaning_run):
     run, structure = leaning_run
     with netCDF4.Dataset(files[0]) as content:
@@ -65,6 +78,14 @@ def test_vtk_reads_blocks_and_joints_over_time(files, leaning_run):
         reader.UpdateTimeStep(1.0)
         cells = reader.GetOutputDataObject(0).GetCellData()
         assert cells.GetArray(name).GetTuple(0)[0] == pytest.approx(expected)
+        last = (
+            reader.GetOutputDataObject(0)
+            .GetFieldData()
+            .GetArray("upper" if name == "velocity" else "lower-upper")
+        )
+        assert [last.GetValue(row) for row in range(last.GetNumberOfValues())] == [
+            2 if name == "velocity" else 1
+        ]
 
 
 def test_a_run_in_national_coordinates_counts_from_a_local_origin(files, leaning_run, tmp_path):

@@ -5,7 +5,7 @@ rule compare_open_tests:
     """The open tests of a case's campaign against the samples of the calibration by a model; finished runs are kept."""
     input:
         structure=structure_file,
-        campaign=lambda wildcards: campaign_files(wildcards.case, every=True),
+        campaign=open_files,
         kernels=lambda wildcards: kernels(wildcards.model),
     output:
         "results/{study}/open-tests/{model}/{case}.nc",
@@ -26,6 +26,7 @@ rule compare_open_tests:
             "models": {wildcards.model: config["models"][wildcards.model]},
         },
         store="results/store",
+        said=said(structure_file, open_files),
         source=lambda wildcards: source_of("compare_open_tests", wildcards.model),
     script:
         "../scripts/compare_open_tests.py"

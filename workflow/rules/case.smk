@@ -2,6 +2,40 @@
 
 from functools import cache
 
+from blockshake.files import content_digest
+
+
+def by_content(path):
+    """Path of a file, one in YAML `ancient`: what it says, and not its time, makes a rule with `said` run again."""
+    return ancient(path) if path.endswith((".yaml", ".yml")) else path
+
+
+def said(*inputs):
+    """Parameter of a rule with these inputs: what the files in YAML say, in which a comment counts nothing.
+
+    Of a function of `input` itself Snakemake does not notice a change.
+    """
+    return lambda wildcards: [
+        _said(path)
+        for one in inputs
+        for path in _paths(one(wildcards) if callable(one) else one)
+        if path.endswith((".yaml", ".yml"))
+    ]
+
+
+def _paths(named):
+    """Paths in lists and in values of mappings."""
+    if isinstance(named, str):
+        return [named]
+    inside = named.values() if isinstance(named, dict) else named
+    return [path for one in inside for path in _paths(one)]
+
+
+@cache
+def _said(path):
+    with refusing():
+        return content_digest(load_yaml(path))
+
 
 @cache
 def campaign_files(case, every=False):
@@ -9,7 +43,18 @@ def campaign_files(case, every=False):
     measured = CASES[case]["measured"]
     campaign = load_campaign(measured["campaign"])
     tests = campaign.open.values() if every else [campaign.open[measured["test"]]]
-    return files_of_tests(campaign, tests)
+    return [by_content(path) for path in files_of_tests(campaign, tests)]
+
+
+def measured_files(wildcards):
+    """The same of the case of a rule, without any where it is compared with none."""
+    case = wildcards.case
+    return campaign_files(case) if CASES[case]["measured"] else []
+
+
+def open_files(wildcards):
+    """Those of every test of a case that is not sealed."""
+    return campaign_files(wildcards.case, every=True)
 
 
 def files_of_tests(campaign, tests):

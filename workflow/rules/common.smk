@@ -99,7 +99,7 @@ def with_numbers(value):
 def definition(kind, name):
     """Path of a structure or motion: a shipped one by its name, else the file named."""
     path = shipped(kind, name)
-    return beside(path) if path.exists() else name
+    return by_content(beside(path) if path.exists() else name)
 
 
 def beside(path):

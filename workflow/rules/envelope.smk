@@ -14,6 +14,7 @@ rule make_envelope:
     params:
         structure=lambda wildcards: CASES[wildcards.case]["structure"],
         largest_drift=lookup(dpath="ladder/largest_drift", within=config),
+        said=said(structure_file),
         source=source_of("make_envelope"),
     script:
         "../scripts/make_envelope.py"
@@ -24,7 +25,7 @@ rule compare_with_measurement:
     input:
         unpack(batches_of_models),
         base="results/{study}/inputs/{case}.nc",
-        campaign=lambda wildcards: campaign_files(wildcards.case),
+        campaign=measured_files,
     output:
         [f"results/{{study}}/comparisons/{model}/{{case}}.nc" for model in MODELS],
     log:
@@ -34,6 +35,7 @@ rule compare_with_measurement:
     params:
         models=MODELS,
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
+        said=said(measured_files),
         source=source_of("compare_with_measurement"),
     script:
         "../scripts/compare_with_measurement.py"
@@ -54,6 +56,7 @@ rule measure_sensitivity:
     params:
         structure=lambda wildcards: CASES[wildcards.case]["structure"],
         linked=lookup(dpath="ensemble/linked", within=config),
+        said=said(structure_file),
         source=source_of("measure_sensitivity"),
     script:
         "../scripts/measure_sensitivity.py"
@@ -68,9 +71,7 @@ rule compare_models:
             if CASES[wildcards.case]["measured"]
             else []
         ),
-        campaign=lambda wildcards: (
-            campaign_files(wildcards.case) if CASES[wildcards.case]["measured"] else []
-        ),
+        campaign=measured_files,
     output:
         "results/{study}/differences/{case}.nc",
     log:
@@ -80,6 +81,7 @@ rule compare_models:
     params:
         models=MODELS,
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
+        said=said(measured_files),
         source=source_of("compare_models"),
     script:
         "../scripts/compare_models.py"

@@ -7,9 +7,7 @@ rule measure_changes:
             if CASES[wildcards.case]["measured"]
             else []
         ),
-        campaign=lambda wildcards: (
-            campaign_files(wildcards.case) if CASES[wildcards.case]["measured"] else []
-        ),
+        campaign=measured_files,
     output:
         "results/{study}/changes/{case}.nc",
     log:
@@ -20,6 +18,7 @@ rule measure_changes:
         models=MODELS,
         climber=FRAGILITY.get("model"),
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
+        said=said(measured_files),
         source=source_of("measure_changes"),
     script:
         "../scripts/measure_changes.py"

@@ -22,6 +22,7 @@ rule climb_samples:
         runs=lambda wildcards: runs_of(FRAGILITY["model"], case_keys(wildcards.case)),
         ladder=lookup(dpath="ladder", within=config),
         store="results/store",
+        said=said(case_files),
         source=lambda wildcards: source_of("climb_samples", FRAGILITY["model"]),
     script:
         "../scripts/climb_samples.py"

@@ -2,7 +2,7 @@ rule measure_input:
     """Motion of the slab in the test that a case is compared with: the input of its models, and the test's clock."""
     input:
         unpack(case_files),
-        campaign=lambda wildcards: campaign_files(wildcards.case),
+        campaign=measured_files,
     output:
         "results/{study}/inputs/{case}.nc",
     log:
@@ -12,6 +12,7 @@ rule measure_input:
     params:
         case=case_definition,
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
+        said=said(case_files, measured_files),
         source=source_of("measure_input"),
     script:
         "../scripts/measure_input.py"

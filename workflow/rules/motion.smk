@@ -1,7 +1,12 @@
+def motion_file(wildcards):
+    """Definition of a motion, by the name of its results."""
+    return definition("motions", MOTIONS[wildcards.motion])
+
+
 rule describe_motion:
     """Histories, response spectrum and figures of a ground motion."""
     input:
-        lambda wildcards: definition("motions", MOTIONS[wildcards.motion]),
+        motion_file,
     output:
         "results/{study}/motions/{motion}.nc",
     log:
@@ -10,6 +15,7 @@ rule describe_motion:
         "../envs/blockshake.yaml"
     params:
         baseline=lambda wildcards: BASELINES[MOTIONS[wildcards.motion]],
+        said=said(motion_file),
         source=source_of("describe_motion"),
     script:
         "../scripts/describe_motion.py"

@@ -13,6 +13,7 @@ rule make_report:
         study=CHECKED.model_dump(mode="json"),
         results="results/{study}",
         logs="logs/{study}",
+        said=said(lambda wildcards: files_of_report()),
         source=source_of("make_report"),
     script:
         "../scripts/make_report.py"
@@ -34,6 +35,7 @@ rule make_case_report:
         case="{case}",
         results="results/{study}",
         logs="logs/{study}",
+        said=said(lambda wildcards: files_of_report(wildcards.case)),
         source=source_of("make_case_report"),
     script:
         "../scripts/make_case_report.py"

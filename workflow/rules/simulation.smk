@@ -30,6 +30,7 @@ rule simulate_batch:
         runs=sample_runs,
         seed=lookup(dpath="ensemble/seed", within=config),
         store="results/store",
+        said=said(run_files),
         source=lambda wildcards: source_of("simulate_batch", wildcards.model),
     script:
         "../scripts/simulate_batch.py"
@@ -51,6 +52,7 @@ rule run_twins:
         runs=sample_runs,
         seed=lookup(dpath="ensemble/seed", within=config),
         store="results/store",
+        said=said(run_files),
         source=lambda wildcards: source_of("run_twins", wildcards.model),
     script:
         "../scripts/run_twins.py"

@@ -101,7 +101,7 @@ def settle(motion, baseline, where, published=False):
     except ValueError as error:
         raise InputError(where, "baseline", f"{error}, not {baseline}") from None
     if not published and baseline in (AUTO, NONE):
-        return _with_words(motion, NONE)
+        return _with_words(motion, motion.attributes.get("baseline", NONE))
     if baseline == NONE:
         return _with_words(motion, f"{NONE}, as asked for; the record {_ends(motion)}")
     if baseline == AUTO:

@@ -1,5 +1,7 @@
 """A ground motion as a Dataset to draw and tabulate: histories, response spectrum, figures."""
 
+from pathlib import Path
+
 import numpy as np
 import xarray as xr
 
@@ -49,7 +51,7 @@ def describe_motion(motion, definition):
         response_spectrum(motion, _PERIODS),
         {"units": "m s-2", "long_name": f"pseudo-acceleration at {DAMPING:.0%} damping"},
     )
-    if motion.attributes.get("synthetic"):
+    if motion.attributes.get("synthetic") and Path(definition).suffix != ".csv":
         _add_target(described, load_synthetic(definition))
     described.attrs = {
         "Conventions": "CF-1.11",

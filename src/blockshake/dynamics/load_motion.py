@@ -1,11 +1,17 @@
 """A ground motion from a shipped name or from a file of any known format, and where it comes from."""
 
+from collections.abc import Mapping
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path
+from typing import Any, TypeAlias
+
 import numpy as np
 
 from blockshake.dynamics.baseline import AUTO, NONE, settle
-from blockshake.dynamics.motion import check_finite, ground_motion
+from blockshake.dynamics.motion import GroundMotion, check_finite, ground_motion
 from blockshake.dynamics.records.at2 import is_at2, read_at2
-from blockshake.dynamics.records.contract_csv import read_motion_csv
+from blockshake.dynamics.records.contract_csv import kept_attributes, motion_of_arrays, read_motion_csv
 from blockshake.dynamics.records.cosmos import is_cosmos, read_cosmos
 from blockshake.dynamics.records.csmip import is_csmip, read_csmip
 from blockshake.dynamics.records.dyna import is_dyna, read_dyna
@@ -13,8 +19,8 @@ from blockshake.dynamics.records.knet import is_knet, read_knet
 from blockshake.dynamics.records.record import chosen_records
 from blockshake.dynamics.records.smc import is_smc, read_smc
 from blockshake.dynamics.synthetic_motion import load_synthetic, synthesise
-from blockshake.errors import InputError
-from blockshake.files import named_file, read_foreign_text
+from blockshake.errors import Argument, InputError
+from blockshake.files import AnyPath, named_file, read_foreign_text
 
 # content decides; the ending only where a broken file of that format should say what it lacks
 _RECORD_FORMATS = (
@@ -27,15 +33,27 @@ _RECORD_FORMATS = (
 )
 
 
-def load_motion(source, scale=1.0, baseline=AUTO, channels=None):
-    """Ground motion from a shipped name or a file.
+_ARRAYS = "arrays"  # what a message calls them
+# a name, a path, arrays by the names of columns (or a table of pandas), or a motion
+MotionSource: TypeAlias = AnyPath | Mapping[str, Any] | GroundMotion
+
+
+def load_motion(
+    source: MotionSource,
+    scale: float = 1.0,
+    baseline: str | float = AUTO,
+    channels: Mapping[str, str] | None = None,
+    name: str | None = None,
+) -> GroundMotion:
+    """Ground motion from a shipped name, a file or arrays.
 
     Parameters
     ----------
-    source : str or path
+    source : str, path, mapping of str to array, or GroundMotion
         ``alkion``, ``basso-tirreno`` (synthetic), a CSV of the project, a record in ESM/ITACA DYNA
         1.2, PEER AT2, COSMOS V2, CSMIP V2, K-NET/KiK-net ASCII or SMC, or the YAML of a synthetic motion. Content tells
-        the format.
+        the format. Arrays by the names of the CSV's columns, such as ``time_s`` and ``acceleration_x``, in SI, also as
+        a table of pandas. A motion that is there already keeps its baseline.
     scale : float
         Multiplies every column, not 0 [1].
     baseline : str or float
@@ -44,6 +62,8 @@ def load_motion(source, scale=1.0, baseline=AUTO, channels=None):
     channels : dict of str to str, optional
         By axis (``x``, ``y``, ``z``) the name of a record's channel, or its number in the file, from 1. By default the
         only channel is x.
+    name : str, optional
+        That results use; by default that of the file, or ``arrays``.
 
     Returns
     -------
@@ -61,11 +81,12 @@ def load_motion(source, scale=1.0, baseline=AUTO, channels=None):
         channels where none is named, a scale that is 0 or not finite, a displacement beyond all numbers, a correction
         that cannot be made.
     """
+    where = source if isinstance(source, (str, PathLike)) else getattr(source, "name", _ARRAYS)
     if not np.isfinite(scale) or scale == 0.0:
-        raise InputError(source, "scale", f"expected a finite number other than 0, found {scale}")
+        raise InputError(where, "scale", f"expected a finite number other than 0, found {scale}")
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # looked at below
-        motion = _read(named_file("motions", source), baseline, channels)
-    return scaled(motion, scale, source)
+        motion = source if isinstance(source, GroundMotion) else _read(source, baseline, channels)
+    return scaled(motion if name is None else replace(motion, name=name), scale, where)
 
 
 def scaled(motion, scale, source):
@@ -76,7 +97,12 @@ def scaled(motion, scale, source):
     return motion
 
 
-def _read(path, baseline, channels):
+def _read(source, baseline, channels):
+    if not isinstance(source, (str, PathLike)):
+        _check_no_channels(channels, _ARRAYS)
+        motion = _motion_of_rows(motion_of_arrays(source, _ARRAYS), _ARRAYS, "Python")
+        return settle(motion, baseline, _ARRAYS)
+    path = named_file("motions", source)
     if path.suffix.lower() in (".yaml", ".yml"):
         _check_no_channels(channels, path)
         if baseline not in (AUTO, NONE):
@@ -94,7 +120,9 @@ def _read(path, baseline, channels):
         )
     _check_no_channels(channels, path)
     if "time_s" in text.partition("\n")[0] or ending == ".csv":
-        return settle(_csv_motion(text, path), baseline, path)
+        motion = _motion_of_rows(read_motion_csv(text, path), path.name, "csv")
+        kept = motion.attributes | kept_attributes(path, text)
+        return settle(replace(motion, attributes=kept), baseline, path)
     raise InputError(
         path, "",
         "expected a motion CSV (time_s, acceleration_x, ...), ESM/ITACA DYNA 1.2, PEER AT2, COSMOS V2, CSMIP V2, "
@@ -102,19 +130,20 @@ def _read(path, baseline, channels):
     )  # fmt: skip
 
 
-def _csv_motion(text, path):
-    time, columns, kind = read_motion_csv(text, path)
-    attributes = {"source": path.name, "format": "csv", "synthetic": False}
+def _motion_of_rows(rows, source, form):
+    """Motion of times, columns and kind, as of `read_motion_csv`."""
+    time, columns, kind = rows
+    attributes = {"source": source, "format": form, "synthetic": False}
     attributes |= {"checked": "times", "assumed": "nothing"}
     if time[0] != 0.0:
         attributes["first_time"] = float(time[0])
-    return ground_motion(path.stem, time - time[0], columns, kind, attributes)
+    return ground_motion(Path(source).stem, time - time[0], columns, kind, attributes)
 
 
 def _check_no_channels(channels, path):
     if channels:
         raise InputError(
-            path, "--column", "expected for a record, or with --unit for a table; this is neither"
+            Argument("channels"), "", f"expected for a record, or with --unit for a table; {path} is neither"
         )
 
 

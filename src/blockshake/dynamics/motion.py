@@ -1,13 +1,15 @@
 """Ground motion as one piecewise cubic displacement, evaluated the same way everywhere."""
 
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 from scipy.interpolate import CubicSpline, PPoly
 
 from blockshake.errors import InputError
 from blockshake.jit import borrowing_kernel
+from blockshake.tables.shown import Shown
 
 CHANNELS = ("x", "y", "z", "pitch_y")
 PITCH = CHANNELS.index("pitch_y")
@@ -25,8 +27,8 @@ class MotionTable(NamedTuple):
     coefficients: np.ndarray
 
 
-@dataclass(frozen=True)
-class GroundMotion:
+@dataclass(frozen=True, repr=False)
+class GroundMotion(Shown):
     """Motion of the driven body.
 
     Attributes
@@ -44,20 +46,30 @@ class GroundMotion:
     name: str
     table: MotionTable
     kind: str
-    attributes: dict = field(default_factory=dict)
+    attributes: dict[str, Any] = field(default_factory=dict)
+
+    def _words(self):
+        return f"{self.name}: {self.duration:g} s, given as {self.kind}"
+
+    def _rows(self):
+        yield "of the motion", "value"
+        peaks = np.abs(self.evaluate(self.table.breaks, 2)).max(axis=0)
+        for channel, unit, peak in zip(CHANNELS, ("m/s2", "m/s2", "m/s2", "rad/s2"), peaks, strict=True):
+            yield f"peak acceleration, {channel}", f"{peak:.4g} {unit}"
+        yield from self.attributes.items()
 
     @property
-    def duration(self):
+    def duration(self) -> float:
         """Time of the last row [s]."""
         return float(self.table.breaks[-1])
 
-    def scaled(self, factor):
+    def scaled(self, factor: float) -> "GroundMotion":
         """The same motion with every column multiplied by ``factor``; the attribute ``scale`` gathers it."""
         table = MotionTable(self.table.breaks, self.table.coefficients * factor)
         scale = float(self.attributes.get("scale", 1.0) * factor)
         return replace(self, table=table, attributes={**self.attributes, "scale": scale})
 
-    def delayed(self, late):
+    def delayed(self, late: float) -> "GroundMotion":
         """The same motion, ``late`` after a rest at its first row; not negative [s]."""
         if late == 0.0:
             return self
@@ -67,7 +79,7 @@ class GroundMotion:
         rows = np.concatenate([breaks[:1], breaks + late])
         return replace(self, table=MotionTable(rows, np.concatenate([rest, coefficients])))
 
-    def evaluate(self, times, derivative=0):
+    def evaluate(self, times: npt.ArrayLike, derivative: int = 0) -> np.ndarray:
         """Displacement (or a time derivative) and pitch at any times.
 
         Parameters

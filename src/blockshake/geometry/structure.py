@@ -1,14 +1,16 @@
 """A structure as the solvers need it: checked file, shapes, mass properties, start state."""
 
 import copy
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import trimesh
 
 from blockshake.errors import InputError
-from blockshake.files import content_digest, load_yaml, named_file
+from blockshake.files import AnyPath, content_digest, load_yaml, named_file
 from blockshake.geometry.mass_offset import check_offset, offset_inertia, offset_solid
 from blockshake.geometry.meshes.mesh_file import read_mesh
 from blockshake.geometry.overlap import depths_of_pairs, near_pairs
@@ -30,6 +32,7 @@ from blockshake.geometry.structure_file import (
     replace_into,
     unit_quaternions,
 )
+from blockshake.tables.shown import Shown
 from blockshake.validation import validated
 
 DEEPEST_OVERLAP = 1e-3  # m; deeper is a wrong structure, not an initial penetration
@@ -59,8 +62,8 @@ class Solid:
     properties: MassProperties
 
 
-@dataclass(frozen=True)
-class Structure:
+@dataclass(frozen=True, repr=False)
+class Structure(Shown):
     """A checked structure with what follows from its geometry.
 
     Attributes
@@ -93,7 +96,7 @@ class Structure:
     file: StructureFile
     source: str
     folder: Path
-    solids: dict
+    solids: dict[str, Solid]
     mass: np.ndarray
     inertia: np.ndarray
     driven: np.ndarray
@@ -104,8 +107,20 @@ class Structure:
     friction: np.ndarray
     touching: np.ndarray
 
+    def _words(self):
+        free = self.mass[~self.driven]
+        return (
+            f"{self.file.name}: {len(free)} blocks of {free.sum():.4g} kg in all, {self.driven.sum()} driven"
+        )
+
+    def _rows(self):
+        yield "body", "shape", "material", "mass [kg]", "mass centre [m]", "driven"
+        for body, mass, centre in zip(self.file.bodies, self.mass, self.position, strict=True):
+            place = ", ".join(f"{along:g}" for along in centre)
+            yield body.name, body.shape, body.material, f"{mass:.4g}", place, "yes" if body.driven else ""
+
     @property
-    def body_names(self):
+    def body_names(self) -> list[str]:
         """Names of the bodies, in file order."""
         return [body.name for body in self.file.bodies]
 
@@ -119,7 +134,7 @@ class Structure:
         """Centroids of the shapes at the start: float64 array, shape (n_bodies, 3), world frame [m]."""
         return np.array([body.position for body in self.file.bodies])
 
-    def with_parameters(self, parameters):
+    def with_parameters(self, parameters: Mapping[str, Any] | None) -> "Structure":
         """The same structure with other values by dotted name, as of `load_structure`; its file is not read again.
 
         Raises
@@ -162,13 +177,18 @@ class Structure:
         return positions - self.mass_offset[self.carriers(points)]
 
 
-def load_structure(source, parameters=None):
-    """Structure from a shipped name or a YAML file, or a loaded one with other parameters.
+# a name, a path, what a file holds, or a structure
+StructureSource = AnyPath | Mapping[str, Any] | Structure
+
+
+def load_structure(source: StructureSource, parameters: Mapping[str, Any] | None = None) -> Structure:
+    """Structure from a shipped name, a YAML file or a mapping, or a loaded one with other parameters.
 
     Parameters
     ----------
-    source : str, path or Structure
-        ``configuration-1`` to ``configuration-4``, or a file; what is loaded is not read again.
+    source : str, path, mapping or Structure
+        ``configuration-1`` to ``configuration-4``, a file, or what a file holds, as dictionaries and lists; what is
+        loaded is not read again. Meshes of a mapping are paths.
     parameters : dict of str to value, optional
         Values by dotted name that replace the file's, such as
         ``{"friction.concrete.concrete": 0.6, "materials.concrete.density": 2350.0}``.
@@ -180,11 +200,14 @@ def load_structure(source, parameters=None):
     """
     if isinstance(source, Structure):
         return source.with_parameters(parameters)
-    path = named_file("structures", source)
-    mapping = copy.deepcopy(load_yaml(path))
+    if isinstance(source, Mapping):
+        mapping, where, folder = copy.deepcopy(dict(source)), "structure", Path()
+    else:
+        path = named_file("structures", source)
+        mapping, where, folder = load_yaml(path), str(source), path.parent
     for key, value in (parameters or {}).items():
-        replace_into(mapping, key, value, str(source))
-    return build_structure(mapping, str(source), path.parent)
+        replace_into(mapping, key, value, where)
+    return build_structure(mapping, where, folder)
 
 
 def build_structure(mapping, source, folder, known=None):

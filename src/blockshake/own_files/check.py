@@ -1,6 +1,7 @@
 """Check of a user's file before anything runs: its kind, and its first fault, by the functions that commands run."""
 
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 from blockshake.diagnosis.nominal.plan import plan_diagnosis
@@ -8,12 +9,13 @@ from blockshake.diagnosis.nominal.planned_test import planned_motion
 from blockshake.dynamics.baseline import AUTO
 from blockshake.dynamics.intensity import strong_until
 from blockshake.dynamics.load_motion import load_motion, provenance, scaled
+from blockshake.dynamics.motion import GroundMotion
 from blockshake.dynamics.synthetic_motion import SyntheticMotion
 from blockshake.errors import InputError, faults_of
-from blockshake.files import load_yaml, shipped_names
+from blockshake.files import AnyPath, load_yaml, shipped_names
 from blockshake.forces.seen.sight import sight_lines
 from blockshake.geometry.schema import StructureFile
-from blockshake.geometry.structure import load_structure
+from blockshake.geometry.structure import Structure, load_structure
 from blockshake.measurement.campaigns.campaign import CampaignFile, load_campaign, load_test
 from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.own_files.import_campaign import import_campaign
@@ -23,6 +25,7 @@ from blockshake.study.config_checks import typical_structure
 from blockshake.study.ensembles.case_input import measured_input
 from blockshake.study.remarks import motion_line, motion_remarks, structure_lines, structure_remarks
 from blockshake.study.sampling.sample_parameters import has_parameter
+from blockshake.validation import Strict
 from blockshake.virtual.settings import VirtualCampaign, load_settings
 
 _WIDEST = 1.0  # of a variable, its standard deviation over its mean
@@ -30,14 +33,14 @@ _SLOWEST = 50.0  # Hz; impacts and peaks of a rocking stack lie between rows tha
 _LATE = 5.0  # s of rest after a motion that need no remark
 
 
-def check_file(source, baseline=AUTO):
+def check(source: AnyPath | Structure | GroundMotion, baseline: str | float = AUTO) -> str:
     """Content of a good file as it was understood, line by line, and remarks.
 
     Parameters
     ----------
-    source : str or path
+    source : str, path, Structure or GroundMotion
         A structure, a motion, a campaign, a study's configuration, the map of an import or the settings of a virtual
-        campaign, by file, folder or shipped name.
+        campaign, by file, folder or shipped name; or a loaded structure or motion.
     baseline : str or float
         Baseline correction of a motion, see `load_motion`; the other files name their own.
 
@@ -46,10 +49,12 @@ def check_file(source, baseline=AUTO):
     InputError
         The first fault of the file, or of what it names.
     """
+    if isinstance(source, Structure) or source in shipped_names("structures"):
+        return _structure_line(source)
+    if isinstance(source, GroundMotion):
+        return _motion_line(source, baseline)
     if (Path(source) / "campaign.yaml").is_file():
         return _campaign_line(Path(source))
-    if source in shipped_names("structures"):
-        return _structure_line(source)
     if Path(source).suffix not in (".yaml", ".yml"):
         return _motion_line(source, baseline)
     keys = load_yaml(source).keys()
@@ -60,7 +65,7 @@ def check_file(source, baseline=AUTO):
             "virtual campaign (intensities) or a synthetic motion (synthetic)"
         )
         raise InputError(source, "", wrong)
-    kind = max(known, key=known.get)
+    kind = max(known, key=lambda schema: known[schema])
     return _motion_line(source, baseline) if kind is SyntheticMotion else _LINES[kind](source)
 
 
@@ -163,7 +168,7 @@ def _study_remarks(config, motions):
             )
 
 
-_LINES = {
+_LINES: dict[type[Strict], Callable[..., str]] = {
     StructureFile: _structure_line,
     StudyConfig: _study_line,
     CampaignFile: lambda source: _campaign_line(Path(source).parent),

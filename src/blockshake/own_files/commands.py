@@ -1,10 +1,11 @@
 """Commands by which own data come in: import-campaign, convert-motion, new and schema."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 from blockshake.errors import InputError
-from blockshake.files import check_output, write_text
+from blockshake.files import check_output, file_digest, history, write_text
 
 KINDS = ("structure", "study", "campaign")
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
@@ -111,7 +112,7 @@ def _columns(options):
 
 def _convert_motion(options):
     check_output(options.output)
-    from blockshake.dynamics.load_motion import load_motion
+    from blockshake.dynamics.load_motion import load_motion, provenance
     from blockshake.dynamics.records.contract_csv import write_motion_csv
     from blockshake.dynamics.records.motion_table import load_motion_table
     from blockshake.study.remarks import motion_line, motion_remarks
@@ -130,7 +131,11 @@ def _convert_motion(options):
         )  # fmt: skip
     else:
         motion = load_motion(options.file, baseline=options.baseline, channels=columns or None)
-    write_motion_csv(motion, options.output)
+    done = f"convert-motion: {provenance(motion.attributes)}"
+    if Path(options.file).is_file():
+        done += f"; digest of {motion.attributes['source']}: {file_digest(options.file)}"
+    attributes = motion.attributes | {"history": history(motion.attributes.get("history"), done)}
+    write_motion_csv(replace(motion, attributes=attributes), options.output)
     print(f"{options.output}: {motion_line(motion)}")
     for remark in motion_remarks(motion):
         print(f"  remark: {remark}")

@@ -9,7 +9,7 @@ import xarray as xr
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
-from blockshake.files import replacing_folder, write_dataset, write_text
+from blockshake.files import history, replacing_folder, write_dataset, write_text
 from blockshake.geometry.schema import AXES
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign_folder import (
@@ -77,7 +77,9 @@ def _fill(asked, folder, where):
             raise InputError(where, key, "expected motions in files of different names")
         readings = checked_test(read_readings(test, asked, structure, where), structure, test.file)
         title = f"measured test {test.name}"
-        readings.attrs = {"Conventions": "CF-1.11", "title": title, "source": Path(test.file).name}
+        sources = ", ".join(Path(one).name for one in (test.file, test.accelerometers) if one)
+        readings.attrs = {"Conventions": "CF-1.11", "title": title, "source": Path(test.file).name,
+                          "history": history(None, f"import-campaign: {sources}")}  # fmt: skip
         write_dataset(folder / f"{name}.nc", readings)
         motion = motion_in_folder(test.motion, folder)
         tests.append({**test.model_dump(), "file": f"{name}.nc", "motion": motion})

@@ -57,7 +57,7 @@ def run_study(file, output=None, cores=None, case=None, say=print):
     config, cores, begin = load_config(file), cores_of("study", cores), time.monotonic()
     names = [one.name for one in config.cases]
     if case is not None and case not in names:
-        raise InputError(file, "--case", f"expected one of {', '.join(names)}, not '{case}'")
+        raise InputError(file, "case", f"expected one of {', '.join(names)}, not '{case}'")
     folder, path = Path(output or ".").resolve(), Path(file).resolve()
     elsewhere = folder != Path.cwd()
     if elsewhere:

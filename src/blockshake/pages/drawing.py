@@ -4,6 +4,7 @@ import io
 import re
 import textwrap
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 from matplotlib.figure import Figure
@@ -20,7 +21,7 @@ LIGHT_GREY, GREY, DARK_GREY = "#e2e2e2", "#b8b8b8", "#555555"
 MEASURED = {"color": BLACK, "linestyle": (0, (4, 2)), "linewidth": 0.9}  # line of a measured curve
 _INCH = 0.0254  # m
 _LETTERS = 84  # of titles, over the columns of a figure
-STYLE = {
+STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 7.5,
     "axes.titlesize": 8.0,
@@ -62,9 +63,18 @@ def column_title(words, columns):
     return "\n".join("\n".join(line) for line in lines)
 
 
+class _Picture(Figure):
+    """A figure that a notebook shows, whether pyplot is at work there or not."""
+
+    def _repr_png_(self):
+        content = io.BytesIO()
+        self.savefig(content, format="png")
+        return content.getvalue()
+
+
 def new_figure(height, width=PAGE_WIDTH):
     """Empty figure of this size [m] whose parts are laid out without overlap."""
-    return Figure(figsize=(width / _INCH, height / _INCH), layout="constrained")
+    return _Picture(figsize=(width / _INCH, height / _INCH), layout="constrained")
 
 
 def check_picture(path):
@@ -74,18 +84,31 @@ def check_picture(path):
 
 
 def save_picture(path, plot, *arguments, **named):
-    """Write the matplotlib figure that ``plot(...)`` returns as PNG, PDF or SVG, by the suffix, atomically."""
+    """Write the matplotlib figure that ``plot(...)`` returns as PNG, PDF or SVG, by the suffix, and return it."""
     check_picture(path)
     with matplotlib.rc_context(STYLE), replacing(path) as temporary:
         kind = Path(path).suffix.lower()
-        figure = _with_plain_powers(plot(*arguments, **named))
+        figure = drawn(plot, *arguments, **named)
         figure.savefig(temporary, format=kind[1:], dpi=_RESOLUTION, metadata=_PICTURES[kind])
+    return figure
+
+
+def drawn(plot, *arguments, **named):
+    """The matplotlib figure that ``plot(...)`` returns, in the report's style; powers in plain letters."""
+    with matplotlib.rc_context(STYLE):
+        figure = plot(*arguments, **named)
+    for axis in (one for axes in figure.axes for one in (axes.xaxis, axes.yaxis)):
+        if isinstance(axis.get_major_formatter(), LogFormatterSciNotation):
+            axis.set_major_formatter(PowersOfTen())
+        if isinstance(axis.get_minor_formatter(), LogFormatterSciNotation):
+            axis.set_minor_formatter(PowersOfTen())
+    return figure
 
 
 def svg_of(plot, *arguments, **named):
     """SVG text, in the report's style, of the matplotlib figure that ``plot(...)`` returns."""
     with matplotlib.rc_context(STYLE):
-        figure = _with_plain_powers(plot(*arguments, **named))
+        figure = drawn(plot, *arguments, **named)
         with io.StringIO() as text:
             figure.savefig(text, format="svg", metadata=_NO_METADATA)
             svg = text.getvalue()
@@ -102,16 +125,6 @@ class PowersOfTen(LogFormatterSciNotation):
         label = label.replace(r"\times", "\N{MULTIPLICATION SIGN}")
         label = re.sub(r"\^\{(.*?)\}", lambda found: found[1].translate(_RAISED), label)
         return label.replace("{", "").replace("}", "")
-
-
-def _with_plain_powers(figure):
-    """The figure with `PowersOfTen` on each of its axes that labels powers."""
-    for axis in (one for axes in figure.axes for one in (axes.xaxis, axes.yaxis)):
-        if isinstance(axis.get_major_formatter(), LogFormatterSciNotation):
-            axis.set_major_formatter(PowersOfTen())
-        if isinstance(axis.get_minor_formatter(), LogFormatterSciNotation):
-            axis.set_minor_formatter(PowersOfTen())
-    return figure
 
 
 def _shorter(path):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.errors import InputError
+from blockshake.errors import Argument, InputError
 from blockshake.measurement.sensors.accelerometers import FINE_RATE, accelerometer_channels
 from blockshake.simulation.models import model_of
 
@@ -19,19 +19,8 @@ def has_fine_record(structure):
 def check_limits(structure, model, time_step, duration, output_rate, fine, in_memory):
     """Refuse a run that cannot end, cannot be held, or is not of its model.
 
-    Parameters
-    ----------
-    structure : Structure
-        With the parameters of the run.
-    model : str
-    time_step, duration : float
-        [s]
-    output_rate : float
-        [Hz]
-    fine : bool
-        Whether sensors are read from a record at `FINE_RATE`.
-    in_memory : bool
-        Whether that record is held in memory, not on disk.
+    The structure has the parameters of the run; ``time_step`` and ``duration`` [s], ``output_rate`` [Hz]; ``fine``:
+    sensors are read from a record at `FINE_RATE`, which is held in memory or on disk.
 
     Raises
     ------
@@ -40,24 +29,24 @@ def check_limits(structure, model, time_step, duration, output_rate, fine, in_me
         than `MOST_STEPS` steps, more than `LARGEST_RUN` bytes, or a free block whose material lacks a property that the
         model is named after.
     """
-    for name, value in (("time-step", time_step), ("duration", duration), ("output-rate", output_rate)):
+    for name, value in (("time_step", time_step), ("duration", duration), ("output_rate", output_rate)):
         if not (np.isfinite(value) and value > 0.0):
-            raise InputError(f"--{name}", "", f"expected a positive number, not {value}")
+            raise InputError(Argument(name), "", f"expected a positive number, not {value}")
     if duration * output_rate < 1.0 - 1e-9:
         wrong = f"expected at least {1.0 / duration:g} Hz of {duration:g} s, not {output_rate:g}"
-        raise InputError("--output-rate", "", f"{wrong}: a run ends at its last row")
+        raise InputError(Argument("output_rate"), "", f"{wrong}: a run ends at its last row")
     if time_step > LONGEST_STEP:
         wrong = f"expected at most {LONGEST_STEP:g} s, not {time_step:g}: impacts last less"
-        raise InputError("--time-step", "", wrong)
+        raise InputError(Argument("time_step"), "", wrong)
     if duration / time_step > MOST_STEPS:
         wrong = f"expected at most {MOST_STEPS:.0e} steps, not {duration / time_step:.2g}"
-        raise InputError("--time-step", "", f"{wrong}: {duration:g} s in steps of {time_step:g} s")
+        raise InputError(Argument("time_step"), "", f"{wrong}: {duration:g} s in steps of {time_step:g} s")
     rows = duration * output_rate, duration * FINE_RATE * fine
     size = run_bytes(structure, *rows, in_memory)
     if size > LARGEST_RUN:
-        rate, option = (FINE_RATE, "--duration") if rows[1] > rows[0] else (output_rate, "--output-rate")
+        rate, name = (FINE_RATE, "duration") if rows[1] > rows[0] else (output_rate, "output_rate")
         wrong = f"expected a run of at most {LARGEST_RUN / 1e9:.2g} GB, not {size / 1e9:.2g} GB"
-        raise InputError(option, "", f"{wrong}: {duration:g} s at {rate:g} Hz")
+        raise InputError(Argument(name), "", f"{wrong}: {duration:g} s at {rate:g} Hz")
     for name in model_of(model).needed:
         for body in structure.file.bodies:
             if not (body.driven or getattr(structure.file.materials[body.material], name)):

@@ -8,8 +8,9 @@ import xarray as xr
 
 from blockshake.dynamics.system import ENERGY_TERMS
 from blockshake.errors import InputError
+from blockshake.files import AnyPath
 from blockshake.geometry.schema import AXES, QUATERNION
-from blockshake.geometry.structure import build_structure
+from blockshake.geometry.structure import Structure, build_structure
 from blockshake.interrupts import delayed_interrupts
 from blockshake.simulation.run_dataset import RUN_HISTORIES
 from blockshake.tables.damaged_hdf5 import DAMAGE, has_endless_heap
@@ -19,14 +20,19 @@ _ATTRIBUTES = ("structure_file", "structure", "motion", "motion_scale", "motion_
 _ORDERS = {"axis": AXES, "quaternion": QUATERNION, "term": ENERGY_TERMS}
 
 
-def load_run(path, meshes=None):
-    """Run file of `simulate`, until the time that the run reached, with its structure.
+# a run file, or what `simulate` returns
+RunSource = AnyPath | xr.Dataset
+
+
+def load_run(source: RunSource, meshes: AnyPath | None = None) -> tuple[xr.Dataset, Structure]:
+    """Run of `simulate`, until the time that it reached, with its structure.
 
     Parameters
     ----------
-    path : str or path
+    source : str, path or xarray.Dataset
+        A run file, or its content.
     meshes : str or path, optional
-        Folder of the structure's meshes; that of the run file by default.
+        Folder of the structure's meshes; by default that of the run file, or the current one.
 
     Returns
     -------
@@ -40,16 +46,8 @@ def load_run(path, meshes=None):
     InputError
         The file is missing, truncated or no run file, or a mesh of the structure is not found.
     """
-    if not Path(path).is_file():
-        raise InputError(path, "", "expected a run file of blockshake simulate; there is no such file")
-    try:
-        if has_endless_heap(Path(path)):
-            raise ValueError("it is damaged")
-        with delayed_interrupts():
-            run = xr.load_dataset(path, engine="netcdf4", decode_times=False)
-    except DAMAGE as error:
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(path, "", f"expected a readable netCDF file; {reason}") from None
+    path = Path("run") if isinstance(source, xr.Dataset) else source
+    run = source if isinstance(source, xr.Dataset) else _read(source)
     known = {name: tuple(dims.split()) for name, (dims, _, _) in RUN_HISTORIES.items()}
     for name, dims in {**known, **dict.fromkeys(_JOINTS, ("joint",))}.items():
         if name not in run.variables or run[name].dims != dims:
@@ -74,11 +72,27 @@ def load_run(path, meshes=None):
             raise InputError(path, name, wrong)
     if not (np.isfinite(run["time"]).all() and (np.diff(run["time"]) > 0.0).all()):
         raise InputError(path, "time", "expected times that increase")
-    reached = np.isfinite(run["position"]).all(("body", "axis"))
+    reached = np.isfinite(run["position"].to_numpy()).all(axis=(1, 2))
     if not reached.any():
         raise InputError(path, "position", "expected at least one time that the run reached")
-    run = run.isel(time=np.flatnonzero(reached))
+    joints = [
+        f"{lower}-{upper}" for lower, upper in zip(run["lower"].values, run["upper"].values, strict=True)
+    ]
+    run = run.isel(time=np.flatnonzero(reached)).assign_coords(joint=np.array(joints, dtype=str))
     return run, structure
+
+
+def _read(path):
+    if not Path(path).is_file():
+        raise InputError(path, "", "expected a run file of blockshake simulate; there is no such file")
+    try:
+        if has_endless_heap(Path(path)):
+            raise ValueError("it is damaged")
+        with delayed_interrupts():
+            return xr.load_dataset(path, engine="netcdf4", decode_times=False)
+    except DAMAGE as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(path, "", f"expected a readable netCDF file; {reason}") from None
 
 
 def _structure_of(run, path, folder):

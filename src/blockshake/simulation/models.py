@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from blockshake.errors import InputError
+from blockshake.errors import Argument, InputError
 
 
 class Uncertain(NamedTuple):
@@ -211,7 +211,7 @@ def model_of(name):
         No such model.
     """
     if name not in MODELS:
-        raise InputError("--model", "", f"expected one of {', '.join(MODELS)}, not '{name}'")
+        raise InputError(Argument("model"), "", f"expected one of {', '.join(MODELS)}, not '{name}'")
     return MODELS[name]
 
 
@@ -257,10 +257,12 @@ def split_parameters(parameters, name):
         for model in MODELS.values():
             fields = model.schema.model_fields if model.prefix == prefix else [parameter]
             if parameter not in fields:
-                raise InputError("--set", key, f"expected one of {prefix}.{{{', '.join(fields)}}}")
+                raise InputError(
+                    Argument("parameters"), key, f"expected one of {prefix}.{{{', '.join(fields)}}}"
+                )
     prefix = f"{asked.prefix}."
     values = {key.removeprefix(prefix): value for key, value in numerical.items() if key.startswith(prefix)}
-    return physical, validated(asked.schema, values, "--set", asked.prefix)
+    return physical, validated(asked.schema, values, Argument("parameters"), asked.prefix)
 
 
 def _named(path):

@@ -62,6 +62,7 @@ def run_dataset(structure, rows, start):
             "marker": np.array([marker.name for marker in markers], dtype=str),
             "marker_body": ("marker", np.array([marker.body for marker in markers], dtype=str)),
             "term": list(ENERGY_TERMS),
+            "joint": np.array([f"{one}-{other}" for one, other in zip(lower, upper, strict=True)], dtype=str),
             "lower": ("joint", np.array(lower, dtype=str)),
             "upper": ("joint", np.array(upper, dtype=str)),
         },

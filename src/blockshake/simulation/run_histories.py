@@ -42,8 +42,8 @@ def run_histories(run, structure):
         ``uplift`` along the normal and ``slip`` along the face, both at the middle of the face [m].
 
         ``joint_position(time, joint, axis)``: middle of what the bounding boxes of the two have in common, inertial
-        frame [m]. ``residual(time)``: energy that the audit does not explain [J]. Coordinates ``driven(body)``
-        and ``joint``, ``lower-upper``.
+        frame [m]. ``residual(time)``: energy that the audit does not explain [J]. Coordinates ``driven(body)``,
+        and those of the run.
 
     Notes
     -----
@@ -70,7 +70,7 @@ def run_histories(run, structure):
             "body": run["body"],
             "driven": ("body", structure.driven),
             "axis": run["axis"],
-            "joint": [f"{names[lower]}-{names[upper]}" for lower, upper in pairs],
+            "joint": run["joint"],
             "lower": run["lower"],
             "upper": run["upper"],
         },

@@ -1,22 +1,25 @@
 """One simulation: structure, motion and parameters in, a run Dataset or a run file out."""
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numba
 import numpy as np
+import xarray as xr
 from scipy.spatial.transform import Rotation
 
 import blockshake
 from blockshake.dynamics.baseline import check_window
-from blockshake.dynamics.load_motion import load_motion, plain_attributes
+from blockshake.dynamics.load_motion import MotionSource, load_motion, plain_attributes, provenance
 from blockshake.dynamics.motion import PITCH, GroundMotion, ground_motion
 from blockshake.dynamics.system import FINISHED, Status
-from blockshake.errors import InputError
+from blockshake.errors import Argument, InputError
+from blockshake.files import AnyPath, history
 from blockshake.geometry.overlap import depths_of_pairs
 from blockshake.geometry.rotations import rotate_into
-from blockshake.geometry.structure import START_TOLERANCE, Structure, load_structure
+from blockshake.geometry.structure import START_TOLERANCE, Structure, StructureSource, load_structure
 from blockshake.measurement.sensors.accelerometers import FINE_RATE
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.falling import still_falling
@@ -31,24 +34,25 @@ _WORST_RESIDUAL = 0.05  # a run whose energy audit misses more is not to be trus
 
 
 def simulate(
-    structure,
-    motion,
-    model,
-    parameters=None,
-    time_step=None,
-    duration=None,
-    output_rate=None,
-    accelerometers=True,
-    checkpoint=None,
-):
+    structure: StructureSource,
+    motion: MotionSource,
+    model: str,
+    parameters: Mapping[str, Any] | None = None,
+    time_step: float | None = None,
+    duration: float | None = None,
+    output_rate: float | None = None,
+    accelerometers: bool = True,
+    checkpoint: AnyPath | None = None,
+    scale: float = 1.0,
+) -> xr.Dataset:
     """Simulate one structure under one motion.
 
     Parameters
     ----------
-    structure : Structure, str or path
-        Loaded; or a shipped name or file.
-    motion : GroundMotion, str or path
-        Already scaled; or a shipped name or file.
+    structure : Structure, str, path or mapping
+        As `blockshake.load_structure` takes it: a shipped name, a file or its content.
+    motion : GroundMotion, str, path or mapping of str to array
+        As `blockshake.load_motion` takes it: a shipped name, a file or arrays.
     model : str
         One of `blockshake.simulation.models.MODELS`.
     parameters : dict of str to value, optional
@@ -64,6 +68,8 @@ def simulate(
         Compute the accelerometer channels, which takes a fine record, and the displacement transducers beside them.
     checkpoint : path, optional
         Where a long run is saved every minute, and from where it goes on, bit-identical, if it was cut short.
+    scale : float
+        Multiplies the motion, not 0 [1].
 
     Returns
     -------
@@ -75,6 +81,7 @@ def simulate(
     InputError
         Unknown model or parameter, a structure that is wrong, or a run beyond the limits of `check_run`.
     """
+    motion = load_motion(motion, scale)
     of = _set_up(structure, motion, model, parameters, time_step, duration, output_rate, accelerometers)
     trajectory = of.solve(checkpoint=checkpoint)
     parts = RunParts(of.structure, of.coarse, of.fine, trajectory)
@@ -97,17 +104,8 @@ def simulate_to_file(
     The run goes on from ``PATH.checkpoint`` if it was cut short, with the rows in ``PATH.checkpoint.rows``; both are
     taken away once the run file is whole.
 
-    Parameters
-    ----------
-    path : str or path
-        To write, whole or not at all: what `simulate` returns, to the bit.
-    structure, motion, model, parameters, time_step, duration, output_rate
-        The same arguments as those of `simulate`.
-
-    Raises
-    ------
-    InputError
-        Errors of `simulate`; or the file cannot be written.
+    The file at ``path`` is written whole or not at all, and holds what `simulate`, whose arguments the others are,
+    returns, to the bit. Errors are those of `simulate`, and a file that cannot be written.
     """
     of = _set_up(
         structure, motion, model, parameters, time_step, duration, output_rate, accelerometers=True, in_memory=False
@@ -185,7 +183,10 @@ class _SetUp(NamedTuple):
             **{f"numerics_{name}": value for name, value in trajectory.numerics.items()},
             "blockshake_version": blockshake.__version__,
             "source_digest": source_digest(*module_sources("simulation/simulate.py", self.model)),
-            "history": "made by blockshake simulate",
+            "history": history(
+                motion.attributes.get("history"),
+                f"simulate: {file.name} under {motion.name} of {provenance(motion.attributes)}",
+            ),
         }
 
 
@@ -197,11 +198,11 @@ def _set_up(
     physical, _ = split_parameters(parameters or {}, model)
     built = load_structure(structure, physical)
     numerical = split_parameters(solver.stiffness_of(built) | (parameters or {}), model)[1]
-    motion = motion if isinstance(motion, GroundMotion) else load_motion(motion)
+    motion = load_motion(motion)
     try:
         motion.name.encode()
     except UnicodeEncodeError:  # a run file holds it
-        raise InputError("--motion", motion.name, "expected a name in UTF-8") from None
+        raise InputError(Argument("motion"), motion.name, "expected a name in UTF-8") from None
     _check_start(built, motion)
     time_step = solver.time_step if time_step is None else time_step
     duration = motion.duration if duration is None else duration
@@ -209,7 +210,7 @@ def _set_up(
     fine = np.empty(0)
     sensed = accelerometers and has_fine_record(built)
     check_limits(built, model, time_step, duration, output_rate, sensed, in_memory)
-    check_window(motion, duration, "--duration", "")
+    check_window(motion, duration, Argument("duration"), "")
     coarse = np.arange(int(np.floor(duration * output_rate + 1e-9)) + 1) / output_rate
     if sensed:
         fine = np.arange(int(np.floor(duration * FINE_RATE + 1e-9)) + 1) / FINE_RATE

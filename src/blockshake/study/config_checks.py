@@ -29,12 +29,12 @@ from blockshake.study.stiffness.tower import tower_of
 _NAME = re.compile(r"\w[\w.-]{0,99}")  # of a structure, a motion or a case: it names results
 _RULE = re.compile(r"^(?:rule|checkpoint) (\w+):", re.MULTILINE)
 _SHARED = re.compile(r"diagnosis(-.*)?|hidden-effects|kernels|store")
-# where the configuration says what `simulate` calls by its option
-_OPTIONS = {
-    "--set": "models.{model}.parameters",
-    "--time-step": "models.{model}.time_step",
-    "--duration": "cases.{case}.duration",
-    "--output-rate": "output_rate",
+# where the configuration gives an argument of `simulate`
+_ARGUMENTS = {
+    "parameters": "models.{model}.parameters",
+    "time_step": "models.{model}.time_step",
+    "duration": "cases.{case}.duration",
+    "output_rate": "output_rate",
 }
 
 
@@ -179,7 +179,7 @@ def check_simulations(config, index, structure, motion, where):
             if solver_of(model).calibrated:
                 tower_of(structure)
         except InputError as error:
-            key = _OPTIONS.get(error.where)
+            key = _ARGUMENTS.get(error.where)
             if key is None:
                 raise InputError(where, f"cases.{index}.structure", f"{model}: {error}") from None
             key = ".".join(filter(None, [key.format(model=model, case=index), error.key]))

@@ -12,12 +12,13 @@ from matplotlib.figure import Figure
 from PIL import Image
 from scipy.spatial.transform import Rotation
 
-from blockshake.errors import InputError
-from blockshake.files import replacing
+from blockshake.errors import Argument, InputError
+from blockshake.files import AnyPath, check_output, replacing
 from blockshake.pages.drawing import DARK_GREY, STYLE
 from blockshake.pages.scene.bodies import body_colors
 from blockshake.pages.scene.projection import VIEWS, Scene
 from blockshake.pages.wording import given
+from blockshake.simulation.load_run import RunSource, load_run
 from blockshake.solvers.pieces import Due
 from blockshake.views.figure import run_title
 
@@ -31,7 +32,7 @@ _NEWS_EVERY = 10.0  # s of wall time between lines of progress
 _log = logging.getLogger(__name__)
 
 
-def check_animation(path):
+def _check_suffix(path):
     """Refuse a path whose suffix is no format of moving pictures or cannot be written here, with `InputError`."""
     suffix = Path(path).suffix.lower()
     if suffix not in (".gif", ".mp4"):
@@ -41,15 +42,22 @@ def check_animation(path):
         raise InputError(path, "", wrong)
 
 
-def animate_run(path, run, structure, view="front", magnification=1.0, speed=1.0):
+def animate(
+    run: RunSource,
+    output: AnyPath,
+    view: str = "front",
+    magnification: float = 1.0,
+    speed: float = 1.0,
+    meshes: AnyPath | None = None,
+) -> Path:
     """Write a run as moving pictures, atomically; progress goes to the log.
 
     Parameters
     ----------
-    path : str or path
+    run, meshes
+        Of `load_run`.
+    output : str or path
         GIF, or MP4 where ffmpeg is installed, by the suffix.
-    run, structure : xarray.Dataset, Structure
-        From `load_run`.
     view : str
         One of `VIEWS`: ``front`` (x and z), ``side`` (y and z) or ``3d``.
     magnification : float
@@ -61,40 +69,35 @@ def animate_run(path, run, structure, view="front", magnification=1.0, speed=1.0
     Raises
     ------
     InputError
-        An unknown view or suffix, a number that is not positive, or more than `_MOST_FRAMES` frames.
+        No run, a mesh that is not found, an unknown view or suffix, a number that is not positive, or more than
+        `_MOST_FRAMES` frames.
     """
-    check_animation(path)
+    _check_suffix(check_output(output))
     if view not in VIEWS:
-        raise InputError("--view", view, f"expected {' or '.join(VIEWS)}")
+        raise InputError(Argument("view"), view, f"expected {' or '.join(VIEWS)}")
     for name, value in (("magnification", magnification), ("speed", speed)):
         if not (np.isfinite(value) and value > 0.0):
-            raise InputError(f"--{name}", "", f"expected a positive number, not {value}")
-    times = run["time"].to_numpy()
+            raise InputError(Argument(name), "", f"expected a positive number, not {value}")
+    loaded, structure = load_run(run, meshes)
+    times = loaded["time"].to_numpy()
     frames = (times[-1] - times[0]) / speed * FRAME_RATE
     if frames > _MOST_FRAMES:
-        raise InputError("--speed", "", f"expected at most {_MOST_FRAMES} frames, not {frames:.2g}")
+        raise InputError(Argument("speed"), "", f"expected at most {_MOST_FRAMES} frames, not {frames:.2g}")
     wanted = np.arange(times[0], times[-1] + 1e-9, speed / FRAME_RATE)
     rows = np.searchsorted(times, wanted - 0.5 * float(np.diff(times[:2]).sum()), side="left")
-    position, orientation = magnified(run.isel(time=rows), structure, magnification)
+    position, orientation = magnified(loaded.isel(time=rows), structure, magnification)
     with matplotlib.rc_context(STYLE):
-        film = _Film(run, structure, view, _words(magnification, speed), position, orientation)
-        with replacing(path) as temporary:
-            write = _write_gif if Path(path).suffix.lower() == ".gif" else _write_mp4
+        film = _Film(loaded, structure, view, _words(magnification, speed), position, orientation)
+        with replacing(output) as temporary:
+            write = _write_gif if Path(output).suffix.lower() == ".gif" else _write_mp4
             write(temporary, film, times[rows])
+    return Path(output)
 
 
 def magnified(run, structure, magnification):
     """Poses with the motion against the base magnified.
 
-    Parameters
-    ----------
-    run, structure : xarray.Dataset, Structure
-    magnification : float
-
-    Returns
-    -------
-    position, orientation : float64 arrays, shape (n_times, n_bodies, 3) and (n_times, n_bodies, 4)
-        Inertial frame [m]; unit quaternions, body to world.
+    Positions (n_times, n_bodies, 3), inertial frame [m], and unit quaternions (n_times, n_bodies, 4), body to world.
 
     Notes
     -----

@@ -6,8 +6,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from matplotlib import colormaps
+from matplotlib.figure import Figure
 
 from blockshake.dynamics.system import ENERGY_TERMS
+from blockshake.files import AnyPath, check_output
 from blockshake.pages.drawing import (
     BLACK,
     BLUE,
@@ -18,9 +20,14 @@ from blockshake.pages.drawing import (
     PURPLE,
     RED,
     SKY,
+    check_picture,
+    drawn,
     new_figure,
+    save_picture,
 )
 from blockshake.pages.wording import MICRO, given, model_label, number
+from blockshake.simulation.load_run import RunSource, load_run
+from blockshake.simulation.run_histories import run_histories
 
 _ROW, _MAP_ROW, _TITLE = 0.031, 0.042, 0.018  # m of paper
 _TITLE_LETTERS = 105
@@ -54,13 +61,25 @@ class _Panel(NamedTuple):
         return self.kind is not None and self.values.sizes[self.kind] > len(_COLORS)
 
 
-def plot_run(run, histories):
-    """Figure of a run, from `load_run` and `run_histories`: one panel a quantity over the same time.
+def plot(run: RunSource, output: AnyPath | None = None, meshes: AnyPath | None = None) -> Figure:
+    """Draw a run: one panel a quantity over the same time.
+
+    ``run`` and ``meshes`` are those of `load_run`; ``output`` is a PNG, PDF or SVG to write, by the suffix. Errors
+    are those of `load_run`, and another suffix.
 
     Drift of every block that is not driven, along y only where it is a tenth of that along x; displacement transducers,
     where there are any; joints that had a face at the start, without the peaks of their impacts; energy, the potential
     one since the start. More than seven blocks, transducers or joints are a map: one row each, the value a colour.
     """
+    if output is not None:
+        check_picture(check_output(output))
+    loaded, structure = load_run(run, meshes)
+    content = plot_run, loaded, run_histories(loaded, structure)
+    return drawn(*content) if output is None else save_picture(output, *content)
+
+
+def plot_run(run, histories):
+    """Figure of a run from `load_run` and its `run_histories`, see `plot`."""
     panels = [
         *_drift_panels(histories),
         *_transducer_panels(run),

@@ -16,12 +16,6 @@ _FLOAT = 5126  # glTF 2.0, section 3.6.2.2: a component of 32 bits
 def write_glb(path, run, structure):
     """Write the blocks of a run and their motion as binary glTF 2.0, atomically.
 
-    Parameters
-    ----------
-    path : str or path
-    run, structure : xarray.Dataset, Structure
-        From `load_run`.
-
     Notes
     -----
     One node a body, of its name; its translation [m] and rotation are animated, one key a time of the run [s],

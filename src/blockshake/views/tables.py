@@ -12,20 +12,11 @@ _UNITS = {"1": "", "m": "_m", "m s-1": "_m_s", "m s-2": "_m_s2", "rad s-1": "_ra
 
 
 def write_tables(path, run, histories):
-    """Write the tables of a run beside each other, all or none.
+    """Write the tables of a run beside each other, all or none; the files are returned.
 
-    Parameters
-    ----------
-    path : str or path
-        ``run.csv`` gives ``run-bodies.csv``, ``run-joints.csv``, ``run-markers.csv``, ``run-energy.csv``,
-        ``run-accelerometers.csv`` and ``run-transducers.csv``, those without a row left out.
-    run, histories : xarray.Dataset
-        From `load_run` and `run_histories`.
-
-    Returns
-    -------
-    list of path
-        The files.
+    ``run.csv`` gives ``run-bodies.csv``, ``run-joints.csv``, ``run-markers.csv``, ``run-energy.csv``,
+    ``run-accelerometers.csv`` and ``run-transducers.csv``, those without a row left out. ``run`` and ``histories`` are
+    from `load_run` and `run_histories`.
     """
     base = Path(path)
     tables = {
@@ -44,8 +35,10 @@ def _tables(run, histories):
     bodies = ("position", "orientation", "velocity", "angular_velocity")
     yield "bodies", _table("body", [*(run[name] for name in bodies), histories["drift"]])
     states = ("normal_force", "shear_force", "friction_ratio", "uplift", "slip", "joint_position")
-    force = run["joint_force"].assign_coords(joint=histories["joint"])
-    yield "joints", _table("joint", [force, *(histories[name] for name in states)], ("lower", "upper"))
+    yield (
+        "joints",
+        _table("joint", [run["joint_force"], *(histories[name] for name in states)], ("lower", "upper")),
+    )
     yield "markers", _table("marker", [run["marker_displacement"]], ("marker_body",))
     energy = {f"{term}_J": run["energy"].sel(term=term).to_numpy() for term in run["term"].values}
     yield "energy", pd.DataFrame({"time_s": run["time"], **energy, "residual_J": histories["residual"]})

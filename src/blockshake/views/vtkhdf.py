@@ -1,6 +1,7 @@
 """A run for ParaView: two VTKHDF files over time, the blocks' surfaces and the joints with their forces."""
 
 import contextlib
+import re
 from pathlib import Path
 
 import netCDF4
@@ -18,26 +19,18 @@ _INT, _REAL = "i8", "f4"
 
 
 def write_vtkhdf(path, run, histories, structure):
-    """Write the blocks and the joints of a run as VTKHDF, both or none.
+    """Write the blocks and the joints of a run as VTKHDF, both or none; the files are returned.
 
-    Parameters
-    ----------
-    path : str or path
-        ``run.vtkhdf`` holds the blocks; the joints go to ``run-joints.vtkhdf`` beside it, where there are any.
-    run, histories, structure : xarray.Dataset, xarray.Dataset, Structure
-        From `load_run` and `run_histories`.
-
-    Returns
-    -------
-    list of path
-        The files.
+    ``run.vtkhdf`` holds the blocks; the joints go to ``run-joints.vtkhdf`` beside it, where there are any. ``run`` and
+    ``histories`` are from `load_run` and `run_histories`.
 
     Notes
     -----
     Polygonal data over time, inertial frame, SI. The cells of the first file are the faces of the bodies, each with
     its body's number in the file of the run (``body``), ``velocity`` of the mass centre, ``angular_velocity`` and
     ``drift``. Those of the second are points, one a joint, with ``force`` on the upper body, ``normal_force``,
-    ``shear_force``, ``friction_ratio``, ``uplift`` and ``slip``, which are NaN where they are unknown. Points count
+    ``shear_force``, ``friction_ratio``, ``uplift`` and ``slip``, which are NaN where they are unknown. The
+    field data give every body, or joint, its number by its name, in which ``_`` stands for other signs. Points count
     from `local_origin`, which is the attribute ``LocalOrigin`` [m] where it is another than 0.
     """
     base, origin = Path(path), local_origin(run)
@@ -52,7 +45,7 @@ def write_vtkhdf(path, run, histories, structure):
 
 
 def _blocks(run, histories, structure, origin):
-    """Points over time, kind of cells, their corners, and values of the cells over time and of all times."""
+    """Points over time, kind of cells, their corners, values of the cells over time and of all times, and names."""
     turns = rotation_matrices(run["orientation"])
     position = run["position"].to_numpy() - origin
     places, cells, owners, count = [], [], [], 0
@@ -69,17 +62,19 @@ def _blocks(run, histories, structure, origin):
         "angular_velocity": run["angular_velocity"].to_numpy()[:, owners],
         "drift": histories["drift"].to_numpy()[:, owners],
     }
-    return np.concatenate(places, axis=1), "Polygons", cells, values, {"body": np.array(owners)}
+    names = structure.body_names
+    return np.concatenate(places, axis=1), "Polygons", cells, values, {"body": np.array(owners)}, names
 
 
 def _joints(run, histories, origin):
     values = {"force": run["joint_force"].to_numpy()}
     values |= {name: histories[name].to_numpy() for name in JOINT_HISTORIES}
     cells = [np.array([joint]) for joint in range(histories.sizes["joint"])]
-    return histories["joint_position"].to_numpy() - origin, "Vertices", cells, values, {}
+    names = histories["joint"].values.tolist()
+    return histories["joint_position"].to_numpy() - origin, "Vertices", cells, values, {}, names
 
 
-def _write(path, times, origin, points, kind, cells, values, steady):
+def _write(path, times, origin, points, kind, cells, values, steady, names):
     """One file: the points move, the cells stay; see the VTKHDF file format, polygonal data and temporal data."""
     n_times, n_points, _ = points.shape
     with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
@@ -113,6 +108,12 @@ def _write(path, times, origin, points, kind, cells, values, steady):
         for name, array in steady.items():
             _put(file, data, name, array)
             _put(file, offsets, name, zero)
+        data, offsets = root.createGroup("FieldData"), steps.createGroup("FieldDataOffsets")
+        for number, name in enumerate(names):  # numbers, as VTK reads no texts that netCDF's library writes
+            plain = re.sub(r"[^\w -]", "_", name).strip() or "_"
+            plain += f" ({number})" if plain in data.variables else ""
+            _put(file, data, plain, np.array([number]))
+            _put(file, offsets, plain, zero)
 
 
 def _put(file, group, name, array):

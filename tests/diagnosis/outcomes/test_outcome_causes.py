@@ -15,7 +15,7 @@ from blockshake.diagnosis.outcomes.unknowns import UNKNOWNS, model_at, value_of
 from blockshake.errors import InputError
 from blockshake.geometry.structure import build_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
-from blockshake.own_files.check import check_file
+from blockshake.own_files.check import check
 from blockshake.store import Store
 
 NAMES = [unknown.name for unknown in UNKNOWNS]
@@ -137,7 +137,7 @@ def test_a_strong_pulse_throws_the_column_down(tmp_path, off_centre, monkeypatch
 
 def test_check_says_what_is_there_and_what_contradicts(off_centre):
     folder, _ = off_centre
-    lines = check_file(str(folder))
+    lines = check(str(folder))
     opened = load_campaign(folder).open.values()
     assert f"{sum(test.outcome == 'fell' for test in opened)} fell" in lines
     assert (

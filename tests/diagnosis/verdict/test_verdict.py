@@ -31,6 +31,13 @@ def _named(**changed):
     )
 
 
+def test_a_verdict_shows_itself_in_a_line_and_in_a_table():
+    verdict = _named()
+    assert repr(verdict) == "<Verdict probable (named), weak-joint>"
+    for cell in ("weak-joint", "0.6", "factor 0.3 1", "0.2 to 0.4"):
+        assert f"<td>{cell}</td>" in verdict._repr_html_()
+
+
 def test_a_verdict_returns_as_it_was_written(tmp_path):
     path = tmp_path / "verdict.json"
     write_verdict(path, _named())

@@ -329,7 +329,7 @@ def test_a_record_says_what_was_checked_and_assumed(tmp_path):
 
 def test_a_channel_is_of_one_axis(tmp_path):
     path = write(tmp_path, "b.v2", csmip(CM, channels=2))
-    with pytest.raises(InputError, match="--column: y=180 deg: expected every channel for one axis"):
+    with pytest.raises(InputError, match="channels: y=180 deg: expected every channel for one axis"):
         load_motion(path, channels={"x": "2", "y": "180 deg"})
 
 

@@ -8,7 +8,7 @@ from blockshake.diagnosis.nominal.nominal_model import draw_nominal
 from blockshake.diagnosis.nominal.planned_test import PlannedTest
 from blockshake.diagnosis.nominal.simulated_test import simulated_test
 from blockshake.dynamics.load_motion import load_motion
-from blockshake.errors import InputError
+from blockshake.errors import Argument, InputError
 from blockshake.files import load_yaml
 from blockshake.forces.seen.seen_test import see_test, why_unseen
 from blockshake.geometry.schema import Accelerometer, Marker
@@ -106,7 +106,7 @@ def load_asked(structure, motions, sensors=None, duration=None):
         slab without a marker along x, or a duration that is no time.
     """
     if duration is not None and not 0.0 < duration < np.inf:
-        raise InputError("--duration", duration, "expected a positive number of seconds")
+        raise InputError(Argument("duration"), duration, "expected a positive number of seconds")
     loaded, where = load_structure(structure), sensors or structure
     mapping = loaded.file.model_dump(mode="json")
     noise = Sensors()
@@ -130,7 +130,7 @@ def load_asked(structure, motions, sensors=None, duration=None):
     for entry in motions:
         test, motion = _motion(entry)
         if test in scaled:
-            raise InputError("--motions", entry, "expected every motion and scale once")
+            raise InputError(Argument("motions"), entry, "expected every motion and scale once")
         scaled[test] = motion
         check_run(whole, motion, SOLVER, {}, None, duration or motion.duration, None)
     return Asked(whole, noise, chosen, more, scaled, duration)
@@ -141,7 +141,9 @@ def _motion(entry):
     try:
         name, scale = (name, float(scale)) if at else (entry, 1.0)
     except ValueError:
-        raise InputError("--motions", entry, "expected NAME or NAME@SCALE, such as alkion@2.5") from None
+        raise InputError(
+            Argument("motions"), entry, "expected NAME or NAME@SCALE, such as alkion@2.5"
+        ) from None
     motion = load_motion(name, scale)
     return f"{motion.name}@{scale:g}", motion
 

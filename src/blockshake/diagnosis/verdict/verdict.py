@@ -10,6 +10,7 @@ from blockshake.diagnosis.answer.decision import Cause, Estimate, Measurement
 from blockshake.diagnosis.verdict.ladder import ESTABLISHED, NOTHING, ONE_OF, PROBABLE, UNKNOWN
 from blockshake.files import load_json, write_json
 from blockshake.statistics.resampling import limits_of
+from blockshake.tables.shown import Shown
 from blockshake.validation import Count, Finite, Fraction, Strict, validated
 
 VERSION = 4
@@ -77,10 +78,10 @@ class Outside(Strict):
     starts: dict[str, Finite] = Field(description="by test, of a form that starts [s]")
 
 
-class Verdict(Strict):
+class Verdict(Shown, Strict):
     """The whole file; `Verdict` in docs/guide/contracts.md says what each field holds."""
 
-    version: Literal[VERSION] = VERSION
+    version: Literal[VERSION] = VERSION  # type: ignore[valid-type]
     decision: Literal["none", "named", "ambiguous", "combination", "unknown"]
     causes: tuple[str, ...]
     probabilities: dict[str, Fraction]
@@ -96,7 +97,7 @@ class Verdict(Strict):
     odds: dict[str, Finite] = Field(default_factory=dict)
     places: dict[str, tuple[str, ...]] = Field(default_factory=dict)
     limits: dict[str, dict[str, Finite]] = Field(default_factory=dict)
-    word: Literal[ESTABLISHED, PROBABLE, ONE_OF, UNKNOWN, NOTHING]
+    word: Literal[ESTABLISHED, PROBABLE, ONE_OF, UNKNOWN, NOTHING]  # type: ignore[valid-type]
     missing: tuple[str, ...] = ()
     row_gain: Gain | None = None
     next_tests: tuple[Measurement, ...] = ()
@@ -107,6 +108,17 @@ class Verdict(Strict):
     tests: dict[str, str] = Field(
         default_factory=dict, description="digests of the files that it was judged by"
     )
+
+    def _words(self):
+        return ", ".join([f"{self.word} ({self.decision})", *self.causes])
+
+    def _rows(self):
+        yield "cause", "probability", "size", "with 90 % limits"
+        for cause, probability in self.probabilities.items():
+            sizes = self.parameters.get(cause, {}).items()
+            words = [f"{name} {one.estimate:.3g} {one.unit}" for name, one in sizes]
+            limits = [f"{one.lower:.3g} to {one.upper:.3g}" for _, one in sizes]
+            yield cause, f"{probability:.3g}", "; ".join(words), "; ".join(limits)
 
     @model_validator(mode="after")
     def _consistent(self):

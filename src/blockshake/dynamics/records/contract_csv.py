@@ -1,7 +1,9 @@
 """The project's own motion file: a CSV with ``time_s`` and columns of one kind, in SI."""
 
+import contextlib
 import csv
 import io
+from pathlib import Path
 
 import numpy as np
 
@@ -9,10 +11,12 @@ from blockshake.dynamics.motion import CHANNELS
 from blockshake.dynamics.records.record import finite_number
 from blockshake.dynamics.records.times import check_times
 from blockshake.errors import InputError
-from blockshake.files import write_text
+from blockshake.files import content_digest, load_json, write_json, write_text
 from blockshake.geometry.schema import AXES
 from blockshake.tables.numbers import missing_code
 
+METADATA = "-metadata.json"
+_OF_ITS_TIMES = ("first_time", "record_start")  # which a CSV counts from its own first row
 KINDS = ("acceleration", "velocity", "displacement")
 
 
@@ -55,14 +59,40 @@ def read_motion_csv(text, where):
             for name, cell in zip(header, row, strict=True)
         ]
     columns = {name: values[:, index] for index, name in enumerate(header)}
+    return *_checked_rows(columns, lines, where, "line"), kind
+
+
+def motion_of_arrays(arrays, where):
+    """Time, columns and kind, as of `read_motion_csv`, of arrays (n_rows,) by the names of a motion file's columns.
+
+    A table of pandas will do. Errors are those of `read_motion_csv`, with the number of a row from 0 for a line.
+    """
+    if not hasattr(arrays, "keys"):
+        raise InputError(where, "", "expected a name, a path, or arrays by the names of columns")
+    names = list(arrays.keys())  # of a table too, which is no mapping
+    kind = _check_header(names, where)
+    try:
+        values = np.array([np.asarray(arrays[name], dtype=float) for name in names])
+    except (TypeError, ValueError):  # texts, or lengths that differ
+        values = np.empty(0)
+    if values.ndim != 2 or values.shape[1] < 2:
+        raise InputError(where, "", "expected arrays of at least two numbers, all of one length")
+    for name, row in ((names[column], row) for column, row in np.argwhere(~np.isfinite(values))):
+        raise InputError(where, f"row {row}, {name}", "expected a finite number")
+    columns = dict(zip(names, values, strict=True))
+    return *_checked_rows(columns, range(values.shape[1]), where, "row"), kind
+
+
+def _checked_rows(columns, lines, where, row):
+    """Times and columns by channel of rows of finite numbers, on these lines of a file."""
     time = columns.pop("time_s")
     for name, column in columns.items():
         coded = missing_code(column)
         if coded is not None:
             expected = f"expected a value; {column[coded]:g} looks like a code for none"
-            raise InputError(where, f"line {lines[coded]}, {name}", expected)
-    check_times(time, lines, where, "time_s")
-    return time, {name if name == "pitch_y" else name[-1]: column for name, column in columns.items()}, kind
+            raise InputError(where, f"{row} {lines[coded]}, {name}", expected)
+    check_times(time, lines, where, "time_s", row)
+    return time, {name if name == "pitch_y" else name[-1]: column for name, column in columns.items()}
 
 
 def _rows(text):
@@ -93,7 +123,7 @@ def _check_header(header, where):
 
 
 def write_motion_csv(motion, path):
-    """Write a motion as the project's CSV, in the kind it came from, with all its digits.
+    """Write a motion as the project's CSV, in the kind it came from, with all its digits; its attributes beside it.
 
     Channels that never move are left out (``x`` stays when all rest). Read again, the file gives
     the same displacement from its first row: a constant offset of a motion integrated from
@@ -103,7 +133,8 @@ def write_motion_csv(motion, path):
     ----------
     motion : GroundMotion
     path : str or path
-        Replaced atomically.
+        Replaced atomically. ``PATH-metadata.json``, named as in CSV on the Web (W3C), holds the attributes, and a
+        digest of the CSV: a CSV that was altered since has none.
     """
     breaks, coefficients = motion.table
     order = {"displacement": 0, "velocity": 1, "acceleration": 2}[motion.kind]
@@ -116,7 +147,21 @@ def write_motion_csv(motion, path):
             columns[f"{motion.kind}_{CHANNELS[index]}"] = _at_rows(breaks, coefficients[:, index], order)
     lines = [",".join(columns)]
     lines += [",".join(repr(float(cell)) for cell in row) for row in zip(*columns.values(), strict=True)]
-    write_text(path, "\n".join(lines) + "\n")
+    text = "\n".join(lines) + "\n"
+    write_text(path, text)
+    kept = {name: value for name, value in motion.attributes.items() if name not in _OF_ITS_TIMES}
+    write_json(f"{path}{METADATA}", {"csv": content_digest(text.encode()), "attributes": kept})
+
+
+def kept_attributes(path, text):
+    """Attributes that `write_motion_csv` left beside a file of this text; none where the text is another."""
+    beside = Path(f"{path}{METADATA}")
+    with contextlib.suppress(InputError, AttributeError, KeyError):
+        kept = load_json(beside) if beside.is_file() else {}
+        if kept.get("csv") == content_digest(text.encode()):
+            attributes = kept["attributes"].items()
+            return {name: value for name, value in attributes if isinstance(value, (str, int, float))}
+    return {}
 
 
 def _at_rows(breaks, c, order):

@@ -7,7 +7,7 @@ import numpy as np
 from blockshake.dynamics.baseline import settle
 from blockshake.dynamics.motion import CHANNELS, check_finite, ground_motion
 from blockshake.dynamics.records.times import check_times
-from blockshake.errors import InputError
+from blockshake.errors import Argument, InputError
 from blockshake.tables.table_file import read_table
 from blockshake.tables.units import kind_of_unit, unit_size
 
@@ -36,20 +36,20 @@ def load_motion_table(source, layout, time, columns, unit, time_unit, baseline):
         A missing column, a column twice, an unknown unit or channel, a cell that is no number, times that do not
         increase or have a gap; a correction of other than evenly spaced accelerations.
     """
-    kind = kind_of_unit(unit, ("acceleration", "velocity", "displacement"), "--unit", unit)
-    size = unit_size(kind, unit, "--unit", unit)
+    kind = kind_of_unit(unit, ("acceleration", "velocity", "displacement"), Argument("unit"), unit)
+    size = unit_size(kind, unit, Argument("unit"), unit)
     for channel in columns:
         if channel not in CHANNELS[:3]:
-            raise InputError("--column", channel, f"expected {', '.join(CHANNELS[:3])}")
+            raise InputError(Argument("columns"), channel, f"expected {', '.join(CHANNELS[:3])}")
     names = [name.strip() for name in columns.values()]
     if len({*names, time.strip()}) <= len(names):
         raise InputError(
-            "--column", ", ".join(names), "expected every column once, and not that of the times"
+            Argument("columns"), ", ".join(names), "expected every column once, and not that of the times"
         )
     table = read_table(source, layout)
     where = table.source
     read = {channel: _finite(table, name, size, kind) for channel, name in columns.items()}
-    at = _finite(table, time, unit_size("time", time_unit, "--time-unit", time_unit), "time")
+    at = _finite(table, time, unit_size("time", time_unit, Argument("time_unit"), time_unit), "time")
     check_times(at, table.lines, where, time)
     if len(at) < 2:
         raise InputError(where, "", f"expected at least two rows, found {len(at)}")

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from blockshake.dynamics.motion import CHANNELS
-from blockshake.errors import InputError
+from blockshake.errors import Argument, InputError
 from blockshake.tables.numbers import missing_code, plain_number, touching_numbers
 
 SPECTRUM = re.compile("spectr|pseudo", re.IGNORECASE)  # of a header whose values are no motion
@@ -198,7 +198,7 @@ def chosen_records(records, channels, where):
     chosen = {}
     for axis, name in (channels or {"x": ""}).items():
         if axis not in CHANNELS[:3]:
-            raise InputError("--column", axis, f"expected {', '.join(CHANNELS[:3])}")
+            raise InputError(Argument("channels"), axis, f"expected {', '.join(CHANNELS[:3])}")
         named = [
             record
             for number, record in enumerate(records, start=1)
@@ -211,7 +211,7 @@ def chosen_records(records, channels, where):
                 "`blockshake convert-motion --column x=NUMBER` chooses",
             )  # fmt: skip
         if any(named[0] is other for other in chosen.values()):
-            raise InputError("--column", f"{axis}={name}", "expected every channel for one axis")
+            raise InputError(Argument("channels"), f"{axis}={name}", "expected every channel for one axis")
         chosen[axis] = named[0]
     first = next(iter(chosen.values()))
     for record in chosen.values():

@@ -13,28 +13,18 @@ _MOST_DECIMALS = 9  # of printed times
 _FEWEST_ROWS = 20  # below it a table may be sparse on purpose
 
 
-def check_times(time, lines, where, name):
+def check_times(time, lines, where, name, row="line"):
     """Refuse times that do not increase, and gaps in a series that is even otherwise, which no line may bridge.
 
-    Parameters
-    ----------
-    time : float64 array, shape (n_rows,)
-        [s]
-    lines : list of int
-        Line of every row in the file.
-    where, name : str
-        File and column that a message names.
-
-    Raises
-    ------
-    InputError
+    ``time`` (n_rows,) [s]; ``lines``: line of every row in the file ``where``, or another number that ``row`` names;
+    ``name`` of the column.
     """
     steps = np.diff(time)
     back = np.flatnonzero(steps <= 0.0)
     if len(back):
         before, after = time[back[0] : back[0] + 2]
         raise InputError(
-            where, f"line {lines[back[0] + 1]}, {name}",
+            where, f"{row} {lines[back[0] + 1]}, {name}",
             f"expected times that increase from row to row; {after:g} s follows {before:g} s",
         )  # fmt: skip
     usual = float(np.median(steps)) if len(steps) else 0.0
@@ -42,7 +32,7 @@ def check_times(time, lines, where, name):
     if wide.any():
         index = int(np.argmax(wide))
         raise InputError(
-            where, f"line {lines[index + 1]}, {name}",
+            where, f"{row} {lines[index + 1]}, {name}",
             f"expected rows {usual:.4g} s apart as elsewhere; {steps[index]:.4g} s after {time[index]:g} s have none, "
             f"{int(wide.sum())} such gaps in all: write the rows that are missing, or split the motion",
         )  # fmt: skip

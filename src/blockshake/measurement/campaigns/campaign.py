@@ -10,7 +10,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from blockshake.dynamics.baseline import AUTO, Baseline
 from blockshake.errors import InputError
-from blockshake.files import load_yaml, shipped_names
+from blockshake.files import AnyPath, load_yaml, shipped_names
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.clocks import from_command, on_one_clock
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
@@ -18,6 +18,7 @@ from blockshake.measurement.campaigns.recorded_test import read_test
 from blockshake.measurement.sensors.instruments import Sensors
 from blockshake.paths import check_plain, file_below
 from blockshake.tables.numbers import plain_number
+from blockshake.tables.shown import Shown
 from blockshake.validation import Finite, Strict, validated
 
 
@@ -82,8 +83,8 @@ class CampaignFile(Strict):
     )
 
 
-@dataclass(frozen=True)
-class Campaign:
+@dataclass(frozen=True, repr=False)
+class Campaign(Shown):
     """A checked campaign.
 
     Attributes
@@ -102,31 +103,38 @@ class Campaign:
     name: str
     structure: str
     sensors: Sensors
-    tests: dict
+    tests: dict[str, MeasuredTest]
     table: Path | None = None
 
+    def _words(self):
+        return f"{self.name}: {len(self.tests)} tests of {self.structure}"
+
+    def _rows(self):
+        keys = ("name", "motion", "scale", "role", "file", "outcome")
+        return [keys, *([getattr(test, key) or "" for key in keys] for test in self.tests.values())]
+
     @property
-    def still(self):
+    def still(self) -> bool:
         """Whether the ground is at rest in all tests, in which one body is filmed as poses."""
         return all(test.motion is None for test in self.tests.values())
 
     @property
-    def by_outcomes(self):
+    def by_outcomes(self) -> bool:
         """Whether all that is known of the tests is which of them the body survived."""
         return all(test.outcome is not None for test in self.tests.values())
 
     @property
-    def open(self):
+    def open(self) -> dict[str, MeasuredTest]:
         """Tests that are not sealed, by name."""
         return {name: test for name, test in self.tests.items() if test.role != "sealed"}
 
     @property
-    def sealed(self):
+    def sealed(self) -> dict[str, MeasuredTest]:
         """Sealed tests, by name."""
         return {name: test for name, test in self.tests.items() if test.role == "sealed"}
 
 
-def load_campaign(folder):
+def load_campaign(folder: AnyPath) -> Campaign:
     """Campaign of a folder, its test files found but not yet read.
 
     Raises
@@ -166,8 +174,8 @@ def load_campaign(folder):
     check_plain(file.structure, path, "structure")
     structure = file_below(folder, file.structure, path, "structure")
     if not isfile(structure) and file.structure not in shipped_names("structures"):
-        known = ", ".join(shipped_names("structures"))
-        raise InputError(path, "structure", f"expected a file in {folder} or one of {known}")
+        shipped = ", ".join(shipped_names("structures"))
+        raise InputError(path, "structure", f"expected a file in {folder} or one of {shipped}")
     return Campaign(
         folder,
         file.name,

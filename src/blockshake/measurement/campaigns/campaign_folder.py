@@ -6,6 +6,7 @@ from pathlib import Path
 import yaml
 
 from blockshake.dynamics.baseline import AUTO
+from blockshake.dynamics.records.contract_csv import METADATA
 from blockshake.files import shipped_names, write_text
 
 
@@ -13,7 +14,9 @@ def motion_in_folder(motion, folder):
     """Name of a motion in the campaign: a shipped name, or the file copied to the folder as it was published."""
     if motion in shipped_names("motions"):
         return motion
-    copy_beside(motion, folder / Path(motion).name)
+    for suffix in ("", METADATA):
+        if not suffix or Path(f"{motion}{suffix}").is_file():
+            copy_beside(f"{motion}{suffix}", folder / f"{Path(motion).name}{suffix}")
     return Path(motion).name
 
 

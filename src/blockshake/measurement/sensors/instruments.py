@@ -7,6 +7,7 @@ from pydantic import Field
 from scipy.interpolate import CubicSpline
 
 from blockshake.errors import InputError
+from blockshake.files import history
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.schema import AXES, Vector
 from blockshake.measurement.sensors import accelerometers, markers, transducers
@@ -127,6 +128,7 @@ def observe(run, structure, instruments, seed):
             "title": "virtual test: synthetic, not measured",
             "synthetic": 1,
             "source": "one simulated run seen through its instruments",
+            "history": history(run.attrs.get("history"), "generate-campaign: seen through instruments"),
         },
     )  # fmt: skip
     for name, dimension, sigma in (

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.errors import InputError
+from blockshake.errors import Argument, InputError
 from blockshake.jit import borrowing_kernel, inline_kernel
 from blockshake.solvers.nscd_deformable.shapes import elastic_shapes
 
@@ -117,7 +117,7 @@ def _check_size(box, parameters):
     limit = _MOST_NODES if parameters.modes < 3 * nodes - 6 else _MOST_NODES_OF_FULL_MESH
     if nodes > limit:
         raise InputError(
-            "--set",
+            Argument("parameters"),
             "nscd_deformable.mesh_size",
             f"expected at most {limit} nodes in a block, not {nodes}: a larger size",
         )

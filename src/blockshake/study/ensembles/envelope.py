@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.dynamics.system import FALLEN, FINISHED
+from blockshake.files import history
 from blockshake.geometry.reference_block import half_width
 from blockshake.simulation.run_histories import JOINT_FIGURES
 from blockshake.statistics.intervals import (
@@ -101,6 +102,9 @@ def envelope(ensemble, largest_drift, displacement=None):
     result.attrs = {
         **ensemble.attrs,
         "title": "envelope of an ensemble of simulated runs",
+        "history": history(
+            ensemble.attrs.get("history"), f"study: envelope of {ensemble.sizes['sample']} samples"
+        ),
         "samples": ensemble.sizes["sample"],
         "counted": counted.sizes["sample"],
         "confidence": CONFIDENCE,

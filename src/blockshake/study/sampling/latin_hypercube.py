@@ -2,13 +2,15 @@
 
 import csv
 import io
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from blockshake.errors import InputError
-from blockshake.files import read_text, write_text
+from blockshake.files import AnyPath, read_text, write_text
 from blockshake.study.sampling.correlation_control import arrange
 from blockshake.study.sampling.correlation_target import check_correlation, load_correlation
 from blockshake.study.sampling.distributions import TABLE_2, known_as, load_distributions
@@ -18,7 +20,7 @@ SMALLEST_SIZE, LARGEST_SIZE = 10, 1_000_000  # samples; the largest take 2 GB
 DEFAULT_EFFORT = 8
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SampleDesign:
     """Values of the random variables for every sample, and how well they correlate.
 
@@ -44,13 +46,22 @@ class SampleDesign:
     seed: int
     effort: int
 
+    def __repr__(self) -> str:
+        size, count = self.values.shape
+        return (
+            f"<SampleDesign {size} samples of {count} variables, rms correlation error {self.rms_error:.2e}>"
+        )
+
+    def _repr_html_(self) -> str:
+        return self.values.to_html(max_rows=10)
+
     @property
-    def rms_error(self):
+    def rms_error(self) -> float:
         """Root mean square over the pairs of variables of correlation reached minus target [1]."""
         return float(np.sqrt(np.mean(self._errors() ** 2)))
 
     @property
-    def largest_error(self):
+    def largest_error(self) -> float:
         """Largest absolute correlation reached minus target among the pairs of variables [1]."""
         return float(np.max(np.abs(self._errors())))
 
@@ -59,7 +70,7 @@ class SampleDesign:
         pairs = error[np.triu_indices(len(error), k=1)]
         return pairs if pairs.size else np.zeros(1)
 
-    def summary(self):
+    def summary(self) -> dict[str, Any]:
         """Figures to report, as JSON-like values; ``cov`` gives every sample the probability 1/size."""
         mean, deviation = self.values.mean(), self.values.std(ddof=0)
         return {
@@ -78,14 +89,14 @@ class SampleDesign:
 
 
 def draw_samples(
-    size=50,
-    seed=1,
-    distributions=TABLE_2,
-    correlation=None,
-    stratum="median",
-    kind="pearson",
-    effort=DEFAULT_EFFORT,
-):
+    size: int = 50,
+    seed: int = 1,
+    distributions: Mapping[str, Any] = TABLE_2,
+    correlation: pd.DataFrame | AnyPath | None = None,
+    stratum: str = "median",
+    kind: str = "pearson",
+    effort: int = DEFAULT_EFFORT,
+) -> SampleDesign:
     """Latin hypercube samples of the random variables, their correlation brought to a target.
 
     Parameters

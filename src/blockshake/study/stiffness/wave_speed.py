@@ -1,12 +1,13 @@
 """Contact stiffness from wave speed: a step of velocity sent up a tower, as in the paper's Figs. 9 and 10."""
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple, TypedDict
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
-from blockshake.geometry.structure import load_structure
+from blockshake.geometry.structure import StructureSource, load_structure
 from blockshake.simulation.models import model_of
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.store import structure_digest
@@ -98,21 +99,31 @@ def measure_wave_speed(structure, parameters, direction):
     return WaveTest(test, arrival, float(test.height / (arrival[-1] - arrival[0])))
 
 
-def calibrate_stiffness(structure, parameters=None):
+class Stiffness(TypedDict):
+    """Contact stiffness [N/m3], with the wave speeds reached and aimed at [m/s] by direction."""
+
+    normal_stiffness: float
+    shear_stiffness: float
+    definition: str
+    wave_speed: dict[str, float]
+    target_wave_speed: dict[str, float]
+
+
+def calibrate_stiffness(structure: StructureSource, parameters: Mapping[str, Any] | None = None) -> Stiffness:
     """Normal and shear stiffness whose effective wave speeds are those of the blocks' material.
 
     Parameters
     ----------
-    structure : Structure, str or path
+    structure : Structure, str, path or mapping
         Of whose blocks `tower_of` makes the tower that is tested.
     parameters : dict of str to value, optional
         Physical parameters by dotted name.
 
     Returns
     -------
-    dict
-        ``normal_stiffness``, ``shear_stiffness`` [N/m3], ``definition``, and by direction ``wave_speed`` reached
-        and ``target_wave_speed`` [m/s].
+    Stiffness
+        A dict of ``normal_stiffness``, ``shear_stiffness`` [N/m3], ``definition``, and by direction ``wave_speed``
+        reached and ``target_wave_speed`` [m/s].
 
     Raises
     ------
