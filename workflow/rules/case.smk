@@ -31,8 +31,15 @@ def structure_file(wildcards):
 
 def case_files(wildcards):
     """Structure and motion of a case, by name."""
-    motion = definition("motions", CASES[wildcards.case]["motion"])
-    return {"structure": structure_file(wildcards), "motion": motion}
+    return {
+        "structure": structure_file(wildcards),
+        "motion": motion_files(CASES[wildcards.case]["motion"]),
+    }
+
+
+def motion_files(motion):
+    """File of a motion, or all those of a set of records."""
+    return [beside(path) for path in record_files(motion)]
 
 
 def case_keys(case, *more):
@@ -43,7 +50,7 @@ def case_keys(case, *more):
 
 def case_definition(wildcards):
     """The same of a case under one motion of its own."""
-    return case_keys(wildcards.case, "scale", "input")
+    return case_keys(wildcards.case, "scale", "input", "intensity")
 
 
 def run_files(wildcards):

@@ -1,7 +1,7 @@
 rule describe_motion:
     """Histories, response spectrum and figures of a ground motion."""
     input:
-        lambda wildcards: definition("motions", MOTIONS[wildcards.motion]),
+        lambda wildcards: motion_files(MOTIONS[wildcards.motion]),
     output:
         "results/{study}/motions/{motion}.nc",
     log:
@@ -9,6 +9,7 @@ rule describe_motion:
     conda:
         "../envs/blockshake.yaml"
     params:
+        motion=lambda wildcards: MOTIONS[wildcards.motion],
         baseline=lambda wildcards: BASELINES[MOTIONS[wildcards.motion]],
         source=source_of("describe_motion"),
     script:

@@ -2,7 +2,7 @@ LS_DEM_STEP = (
     config["models"].get("ls-dem", {}).get("time_step", SOLVERS["ls-dem"].time_step)
 )
 LADDER_MOTIONS = config["ladder"]["motions"] or list(
-    dict.fromkeys(case["motion"] for case in config["cases"])
+    dict.fromkeys(case["motion"] for case in config["cases"] if not case["intensity"])
 )
 
 

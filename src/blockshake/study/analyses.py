@@ -30,6 +30,11 @@ def _measured_cases(study):
     return [case["name"] for case in study["cases"] if case["measured"]]
 
 
+def _drawing_cases(study):
+    """Cases whose samples draw motions, or are scaled to levels of one."""
+    return [case["name"] for case in study["cases"] if case.get("intensity") is not None]
+
+
 def _cases_of_stiffness(study):
     """Cases of a study that tells of contact stiffness: a model has any, or a structure is the paper's."""
     calibrated = any(solver_of(model).calibrated for model in study["models"])
@@ -99,6 +104,7 @@ ANALYSES = (
     Analysis(
         "fragility", "fragility/{case}.nc", load_made, _cases_of("fragility"), "fragility", check_fragility
     ),
+    Analysis("clouds", "clouds/{model}/{case}.nc", cases=_drawing_cases),
     Analysis("changes", "changes/{case}.nc", load_made, _cases_of("extension"), "extension", check_extension),
     Analysis("calibration", "calibration.json", load_json, None, "calibration", check_calibration),
 )

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, ConfigDict, Field, StringConstraints, field_validator, model_validator
 
 from blockshake.dynamics.baseline import AUTO, Baseline
+from blockshake.dynamics.record_set import Intensity, is_record_set
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
 from blockshake.measurement.sensors.markers import RATE
@@ -97,8 +98,15 @@ class StudyCase(Strict):
         "of one structure, under two motions say, need names"
     )
     structure: str = Field(description="shipped name or file")
-    motion: str = Field(description="shipped name or file")
-    scale: Positive = Field(description="multiplies the motion [1]")
+    motion: str = Field(
+        description="shipped name or file; or a folder of records, or a CSV table of them: each sample draws one"
+    )
+    scale: Positive = Field(1.0, description="multiplies the motion [1]")
+    intensity: Intensity | None = Field(
+        None,
+        description="how strong the motions are told to be and, with `levels`, scaled to be, before `scale`; by "
+        "default the peak ground acceleration where the samples draw records: docs/guide/records.md",
+    )
     baseline: Baseline = AUTO
     duration: Positive = Field(description="simulated time [s]")
     samples: dict[str, Count] = Field(
@@ -117,15 +125,21 @@ class StudyCase(Strict):
     def _with_defaults(cls, given):
         if not isinstance(given, dict):
             return given
+        motion = given.get("motion")
         return {
             "name": Path(str(given.get("structure", ""))).stem,
             "input": MEASURED if given.get("measured") else COMMANDED,
+            "intensity": {} if isinstance(motion, str) and is_record_set(motion) else None,
         } | given
 
     @model_validator(mode="after")
     def _has_input(self):
         if self.input == MEASURED and self.measured is None:
             raise ValueError(f"expected input: {COMMANDED}, as there is no measured test")
+        if self.intensity is not None and self.measured is not None:
+            raise ValueError(
+                "expected no `measured` beside records or `intensity`: no test had these motions"
+            )
         return self
 
 
@@ -248,7 +262,7 @@ class StudyConfig(Strict):
         return next((one for one in self.cases if one.name == pairs.get(case.name)), case)
 
     def named_motions(self):
-        """Key, name and baseline of every motion that is named, cases first; a ladder without motions has theirs."""
+        """Key, name and baseline of every motion or set of records that is named, those of cases first."""
         cases = [(f"cases.{index}", case.motion, case.baseline) for index, case in enumerate(self.cases)]
         return [*cases, *(("ladder", motion, self.ladder.baseline) for motion in self.ladder.motions)]
 

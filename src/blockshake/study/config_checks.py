@@ -9,6 +9,7 @@ import pandas as pd
 
 from blockshake.dynamics.baseline import check_window
 from blockshake.dynamics.load_motion import load_motion, scaled
+from blockshake.dynamics.record_set import DrawnMotions, is_record_set
 from blockshake.errors import InputError, faults_of
 from blockshake.files import HOME
 from blockshake.geometry.structure import load_structure
@@ -55,10 +56,10 @@ def check_named(config, where):
     for model, settings in config.models.items():
         for name in part_parameters(settings.parameters)[0]:
             raise InputError(where, f"models.{model}.parameters.{name}", "expected a parameter of the solver")
-    motions, structures = _read_motions(config, where), {}
+    loaded, structures, shaken = _read_motions(config, where), {}, []
     for motion in config.ladder.motions:
         with faults_of(where, "ladder.motions"):
-            scaled(motions[motion], config.ladder.highest, motion)
+            scaled(loaded[motion, config.ladder.baseline], config.ladder.highest, motion)
     for index, case in enumerate(config.cases):
         key = f"cases.{index}"
         for model, count in case.samples.items():
@@ -68,10 +69,14 @@ def check_named(config, where):
                     where, f"{key}.samples.{model}", f"expected 1 to {config.ensemble.size}, not {count}"
                 )
         with faults_of(where, f"{key}.motion"):
-            motion = scaled(motions[case.motion], case.scale, case.motion)
+            drawn = DrawnMotions.of(case.model_dump(), loaded)
+            for record in drawn.records:
+                check_plain(record.path, case.motion, record.name)
+            shaken.append(drawn.strongest())
         climbs = config.fragility is not None and case.name in config.fragility.cases
         if case.input == COMMANDED or climbs:
-            check_window(motion, case.duration, where, f"{key}.duration")
+            for motion in shaken[-1]:
+                check_window(motion, case.duration, where, f"{key}.duration")
         if case.structure not in structures:
             structures[case.structure] = check_structure(case.structure, where, key)
         if case.measured is not None:
@@ -79,8 +84,7 @@ def check_named(config, where):
             check_measured(case, tested, where, f"{key}.measured")
     check_samples(config.ensemble, structures, where)
     for index, case in enumerate(config.cases):
-        motion = scaled(motions[case.motion], case.scale, case.motion)
-        check_simulations(config, index, structures[case.structure], motion, where)
+        check_simulations(config, index, structures[case.structure], shaken[index][0], where)
     for folder in config.diagnosis.campaigns:
         with faults_of(where, "diagnosis.campaigns"):
             load_campaign(folder)
@@ -90,15 +94,19 @@ def check_named(config, where):
 
 
 def _read_motions(config, where):
-    """Motions by name, each with the one baseline that the study gives it."""
+    """Motions by path and by the one baseline that the study gives it; records of sets are read with their case."""
     baselines, read = {}, {}
     for key, motion, baseline in config.named_motions():
         if baselines.setdefault(motion, baseline) != baseline:
             expected = f"expected one baseline of {motion}; a copy of the file may have another"
             raise InputError(where, f"{key}.baseline", expected)
-        if motion not in read:
-            with faults_of(where, f"{key}.motions" if key == "ladder" else f"{key}.motion"):
-                read[motion] = load_motion(motion, baseline=baseline)
+        place = f"{key}.motions" if key == "ladder" else f"{key}.motion"
+        if is_record_set(motion):
+            if key == "ladder":
+                raise InputError(where, place, f"expected single motions, not the records of {motion}")
+        elif (motion, baseline) not in read:
+            with faults_of(where, place):
+                read[motion, baseline] = load_motion(motion, baseline=baseline)
     return read
 
 
@@ -286,6 +294,10 @@ def check_fragility(asked, config, structures, where):
     """Cases and a model of the study, and no more samples than there are."""
     for name in asked.cases:
         _one_of(name, [case.name for case in config.cases], where, "fragility.cases")
+        if (strong := config.case(name).intensity) is not None and len(strong.levels) > 1:
+            raise InputError(
+                where, "fragility.cases", f"expected {name} to have one level, which samples climb from"
+            )
     _each_once(asked.cases, where, "fragility.cases")
     _one_of(asked.model, config.models, where, "fragility.model")
     if asked.size > config.ensemble.size:

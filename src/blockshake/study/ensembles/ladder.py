@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.load_motion import load_motion, scaled
 from blockshake.dynamics.system import Status
 from blockshake.geometry.reference_block import half_width
 from blockshake.geometry.structure import load_structure
@@ -11,14 +11,16 @@ from blockshake.store import structure_digest
 from blockshake.study.ensembles.batch import CaseRuns
 
 
-def climb(structure, runs, parameters, ladder, store):
+def climb(structure, runs, motion, parameters, ladder, store):
     """Simulate one structure at growing intensities, each from the restored stack.
 
     Parameters
     ----------
     structure : Structure
     runs : CaseRuns
-        With ``motion`` and ``baseline`` of the case, and its duration.
+        With the duration of the case.
+    motion : GroundMotion
+        Of the factor 1.
     parameters : dict
         Parameters of the run by dotted name, as `simulate` takes them.
     ladder : Ladder
@@ -39,7 +41,7 @@ def climb(structure, runs, parameters, ladder, store):
     """
     rungs, largest_drift = [], ladder.largest_drift or half_width(structure)
     for scale in ladder.scales.tolist():
-        outcome = _rung(structure, runs, parameters, scale, store)
+        outcome = _rung(structure, runs, scaled(motion, scale, motion.name), parameters, store)
         passed = outcome["status"] == Status.COMPLETED and outcome["peak"] <= largest_drift
         rungs.append({"scale": scale, **outcome, "passed": passed})
         if not passed:
@@ -47,9 +49,8 @@ def climb(structure, runs, parameters, ladder, store):
     return rungs
 
 
-def _rung(structure, runs, parameters, scale, store):
+def _rung(structure, runs, motion, parameters, store):
     """How one run ended, and the largest drift in it [m]."""
-    motion = load_motion(runs.case["motion"], scale, runs.case["baseline"])
     time_step, duration = runs.settings["time_step"], runs.case["duration"]
 
     def simulated(checkpoint):
@@ -79,9 +80,8 @@ def climb_ladders(cases, motions, time_step, ladder, store):
     for name, duration in durations.items():
         structure = load_structure(name)
         for motion, baseline in motions.items():
-            case = {"motion": motion, "baseline": baseline, "duration": duration}
-            runs = CaseRuns(case, "ls-dem", {"time_step": time_step}, {})
-            rungs = climb(structure, runs, {}, ladder, store)
+            runs = CaseRuns({"duration": duration}, "ls-dem", {"time_step": time_step}, {})
+            rungs = climb(structure, runs, load_motion(motion, baseline=baseline), {}, ladder, store)
             climbed[name][motion] = rungs
             passed = [rung["scale"] for rung in rungs if rung["passed"]]
             store.say(f"{name} {motion}: passed {passed}")

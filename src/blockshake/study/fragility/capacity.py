@@ -69,6 +69,17 @@ def fit_capacity(lower, upper):
     return Capacity(float(np.exp(answer.x[0])), float(np.exp(answer.x[1])))
 
 
+def estimate_capacity(lower, upper):
+    """`fit_capacity`, the `Capacity` of many values that are as likely as 95 % allows, and the function that gives the
+    limits of a function of these along its last axis.
+
+    NaN stands for all where no dispersion is known: all capacities then lie between two levels.
+    """
+    fitted, unknown = fit_capacity(lower, upper), Capacity(np.full(1, np.nan), np.full(1, np.nan))
+    likely = likely_capacities(lower, upper) if fitted.dispersion > 0.0 else unknown
+    return fitted, likely, lambda values: np.stack([values.min(axis=-1), values.max(axis=-1)])
+
+
 def likely_capacities(lower, upper):
     """`Capacity` of many values, of which those of a function of it span the limits of 95 % of that function.
 

@@ -6,6 +6,7 @@ import xarray as xr
 from blockshake.dynamics.system import FINISHED
 from blockshake.geometry.reference_block import half_width
 from blockshake.geometry.structure import load_structure
+from blockshake.study.ensembles.case_input import COMMANDED, driving_motions
 from blockshake.study.ensembles.ensemble import describe
 from blockshake.study.ensembles.ladder import climb
 
@@ -18,17 +19,19 @@ _DESCRIBED = {
 }
 
 
-def climb_samples(runs, rows, ladder, store):
+def climb_samples(runs, rows, ladder, store, seed=0):
     """Levels that each sample of a case passes, from the restored stack each time.
 
     Parameters
     ----------
     runs : CaseRuns
-        With ``motion`` and ``baseline`` of the case.
+        With ``motion``, ``baseline`` and ``intensity`` of the case.
     rows : pandas.DataFrame
         Sampled values, index the sample, contact stiffness included.
     ladder : Ladder
     store : Store
+    seed : int
+        Of the design, by which samples draw records.
 
     Returns
     -------
@@ -43,9 +46,10 @@ def climb_samples(runs, rows, ladder, store):
     one that it did not pass; its capacity is the first that it did not.
     """
     structure = load_structure(runs.case["structure"])
+    motions = driving_motions(runs.case | {"scale": 1.0, "input": COMMANDED}, None, seed)
     climbs = []
     for sample, row in rows.iterrows():
-        rungs = climb(structure, runs, runs.parameters(row, structure), ladder, store)
+        rungs = climb(structure, runs, motions(sample), runs.parameters(row, structure), ladder, store)
         climbs.append(rungs)
         store.say(f"{structure.file.name} {runs.model} sample {sample}: {_words(rungs)}")
     return gathered(

@@ -92,6 +92,8 @@ def _grouped(content, names):
 def _under(content, case):
     """Motion of a case with its scale and peak."""
     peak = f"{number(content.peak_acceleration(case))} m/s{SQUARED}"
+    if count := content.motions[case.motion].attrs.get("records"):
+        return f"{count_words(count, 'record')} of {case.motion} x {given(case.settings['scale'])} (median {peak})"
     return f"{case.motion} x {given(case.settings['scale'])} ({peak})"
 
 
