@@ -8,7 +8,7 @@ from blockshake.files import content_digest, write_json
 from blockshake.store import Store
 from blockshake.study.config import Ladder
 from blockshake.study.ensembles import ladder
-from blockshake.study.sampling.latin_hypercube import write_design
+from blockshake.study.sampling.sample_table import write_design
 from blockshake.study.stiffness import wave_speed
 
 CASE = {

@@ -33,11 +33,11 @@ def case_files(wildcards):
     """Structure and motion of a case, by name."""
     return {
         "structure": structure_file(wildcards),
-        "motion": motion_files(CASES[wildcards.case]["motion"]),
+        "motion": files_of_motion(CASES[wildcards.case]["motion"]),
     }
 
 
-def motion_files(motion):
+def files_of_motion(motion):
     """File of a motion, or all those of a set of records."""
     return [beside(path) for path in record_files(motion)]
 

@@ -1,7 +1,7 @@
 rule describe_motion:
     """Histories, response spectrum and figures of a ground motion."""
     input:
-        lambda wildcards: motion_files(MOTIONS[wildcards.motion]),
+        lambda wildcards: files_of_motion(MOTIONS[wildcards.motion]),
     output:
         "results/{study}/motions/{motion}.nc",
     log:

@@ -100,8 +100,11 @@ def _seen_from(folder, study):
         case.setdefault("name", Path(case["structure"]).stem)
         if case.get("measured"):
             case["measured"]["campaign"] = moved(case["measured"]["campaign"])
-    if study["ensemble"].get("correlation"):
-        study["ensemble"]["correlation"] = moved(study["ensemble"]["correlation"])
+    named = [(study["ensemble"], key) for key in ("correlation", "table")]
+    named += [(one, "file") for one in (study["ensemble"].get("distributions") or {}).values()]
+    for mapping, key in named:
+        if mapping.get(key):
+            mapping[key] = moved(mapping[key])
     for key, listed in (("ladder", "motions"), ("diagnosis", "campaigns")):
         if (study.get(key) or {}).get(listed):
             study[key][listed] = [moved(name) for name in study[key][listed]]

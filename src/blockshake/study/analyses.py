@@ -12,7 +12,7 @@ from blockshake.study.config_checks import (
     check_extension,
     check_fragility,
 )
-from blockshake.study.sampling.latin_hypercube import load_design
+from blockshake.study.sampling.sample_table import load_design
 
 OF_THE_PAPER = tuple(f"configuration-{number}" for number in (1, 2, 3, 4))
 

@@ -7,7 +7,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, StringConstraints, fiel
 
 from blockshake.dynamics.baseline import AUTO, Baseline
 from blockshake.dynamics.record_set import Intensity, is_record_set
-from blockshake.errors import InputError
+from blockshake.errors import InputError, faults_of
 from blockshake.files import load_yaml
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.models import solver_of
@@ -25,6 +25,7 @@ from blockshake.study.sampling.distributions import (
     load_distributions,
 )
 from blockshake.study.sampling.latin_hypercube import LARGEST_SIZE, SMALLEST_SIZE
+from blockshake.study.sampling.sample_table import load_design
 from blockshake.validation import Count, Positive, Strict, Whole, validated
 
 
@@ -41,8 +42,15 @@ def _as_text(given):
 
 
 class Ensemble(Strict):
-    """The samples: how many, of which variables, how correlated."""
+    """The samples: how many, of which variables, how correlated; or a table of own ones."""
 
+    model_config = ConfigDict(json_schema_extra=lambda schema: schema["required"].remove("size"))
+
+    table: str | None = Field(
+        None,
+        description="CSV of own samples, a row each, columns the dotted names of the variables: in place of `size`, "
+        "`distributions` and `correlation`",
+    )
     size: Whole = Field(
         ge=SMALLEST_SIZE,
         le=LARGEST_SIZE,
@@ -61,9 +69,27 @@ class Ensemble(Strict):
         description="parameters that take another's sampled value, by dotted names; Table 2's by default",
     )
 
+    @model_validator(mode="before")
+    @classmethod
+    def _of_table(cls, given):
+        if not isinstance(given, dict) or not isinstance(given.get("table"), str):
+            return given
+        for key in ("size", "distributions", "correlation"):
+            if key in given:
+                raise InputError("", f"ensemble.{key}", "expected no such key beside `table`, which tells it")
+        with faults_of("", "ensemble.table"):
+            values = load_design(given["table"])
+            columns = {
+                name: {"distribution": "empirical", "values": sorted(column.tolist())}
+                for name, column in values.items()
+            }
+            return given | {"size": len(values), "distributions": load_distributions(columns, given["table"])}
+
     @field_validator("distributions", mode="before")
     @classmethod
     def _known_variables(cls, mapping):
+        if isinstance(mapping, dict) and all(hasattr(one, "stratum_medians") for one in mapping.values()):
+            return mapping
         return load_distributions(mapping, "ensemble")
 
 

@@ -22,7 +22,7 @@ from blockshake.simulation.simulate import check_run
 from blockshake.study.calibration.comparison import has_use, parameter_of
 from blockshake.study.calibration.settings import OTHERS, STIFFNESS
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED, check_record
-from blockshake.study.sampling.distributions import LINKED, TABLE_2, known_as, parameter_unit
+from blockshake.study.sampling.distributions import LINKED, TABLE_2, Discrete, known_as, parameter_unit
 from blockshake.study.sampling.latin_hypercube import complete_correlation
 from blockshake.study.sampling.sample_parameters import has_parameter, sample_parameters
 from blockshake.study.stiffness.tower import tower_of
@@ -134,8 +134,9 @@ def check_names(config, where):
     ]
     names = [case.name for case in config.cases]
     paths = [("diagnosis.campaigns", folder) for folder in config.diagnosis.campaigns]
-    if config.ensemble.correlation is not None:
-        paths.append(("ensemble.correlation", config.ensemble.correlation))
+    for key in ("correlation", "table"):
+        if getattr(config.ensemble, key) is not None:
+            paths.append((f"ensemble.{key}", getattr(config.ensemble, key)))
     naming = [("ladder.motions", motion) for motion in config.ladder.motions]
     for index, case in enumerate(config.cases):
         naming += [(f"cases.{index}.structure", case.structure), (f"cases.{index}.motion", case.motion)]
@@ -223,8 +224,11 @@ def check_samples(ensemble, structures, where):
     ends = {}
     for name, distribution in variables.items():
         values = distribution.stratum_medians(ensemble.size)
-        if not (np.isfinite(values).all() and (np.diff(values) > 0.0).all()):
-            key = f"ensemble.distributions.{name}"
+        key = f"ensemble.distributions.{name}"
+        if isinstance(distribution, Discrete):
+            if values[0] == values[-1]:
+                raise InputError(where, key, f"expected {ensemble.size} samples that are not all alike")
+        elif not (np.isfinite(values).all() and (np.diff(values) > 0.0).all()):
             raise InputError(where, key, f"expected {ensemble.size} different samples: another cov")
         ends[name] = values[0], values[-1]
     for structure in structures.values():

@@ -188,8 +188,8 @@ def cloud_of_case(samples, case, seed, largest_drift):
         ``method``: ``median``, ``dispersion``, ``safe``, each with its ``_interval(method, bound)``, and
         ``curve(method, fine_intensity)`` with its limits; NaN where the samples do not tell. ``regression`` is
         `fit_cloud`; ``counts`` the lognormal curve of largest likelihood of passing and not passing, Eq. (11) of Baker
-        (2015), Earthquake Spectra 31. Attributes: ``measure``, ``period``, ``levels``, ``units``, ``largest_drift``, and
-        ``slope`` and ``intercept`` of the `Cloud`.
+        (2015), Earthquake Spectra 31. Attributes: ``measure``, ``period``, ``levels``, ``units``,
+        ``largest_drift``, and ``slope`` and ``intercept`` of the `Cloud`.
 
     Notes
     -----

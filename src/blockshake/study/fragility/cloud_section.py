@@ -32,8 +32,8 @@ def cloud_blocks(content):
     limits = " or ".join(sorted({millimetres(one.attrs["largest_drift"]) for one in clouds.values()}))
     words = (
         "Every sample is shaken once, by a motion of its own. It does not pass when it collapses, still falls as its "
-        f"window ends, or a marker moves along x by more than {limits} mm from the slab. The cloud is the regression of "
-        "the logarithm of that displacement on the logarithm of the intensity, over the samples that stand, with a "
+        f"window ends, or a marker moves along x by more than {limits} mm from the slab. The cloud is the regression "
+        "of the logarithm of that displacement on the logarithm of the intensity, over the samples that stand, with a "
         "logistic regression of the falls (Jalayer and Cornell 2009). The counts are fitted by the lognormal curve of "
         "largest likelihood (Baker 2015, Eq. 11). The regression needs no sample that fails, and rests on its straight "
         "line; the counts need both outcomes, and rest on no displacement. The dispersion is the standard deviation of "

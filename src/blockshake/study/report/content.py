@@ -18,8 +18,8 @@ from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.ensemble import measured_curves
 from blockshake.study.ensembles.timing import read_timings
 from blockshake.study.sampling.distributions import load_distributions
-from blockshake.study.sampling.latin_hypercube import load_design
 from blockshake.study.sampling.sample_parameters import has_parameter
+from blockshake.study.sampling.sample_table import load_design
 
 
 @dataclass(frozen=True)
