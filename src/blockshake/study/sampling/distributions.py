@@ -171,7 +171,7 @@ class Discrete(_ByQuantiles):
 
     def quantile(self, probability):
         """Smallest values with at least the probabilities ``probability`` (float or array, in (0, 1)) up to them."""
-        place = np.searchsorted(np.cumsum(self._shares) - 1e-9, probability)
+        place = np.searchsorted(np.cumsum(self._shares) + 1e-9, probability)
         return np.array(self.values)[np.minimum(place, len(self.values) - 1)]
 
     def density(self, value):
@@ -191,21 +191,20 @@ class OfScipy(_ByQuantiles):
     def _is_known(self):
         known = getattr(scipy.stats, _OTHER_NAMES.get(self.distribution, self.distribution), None)
         if not isinstance(known, scipy.stats.rv_continuous):
-            raise ValueError(
-                "expected lognormal, tabulated, discrete, empirical, or the name of a continuous distribution of "
-                f"scipy.stats such as norm, uniform, truncnorm, not {self.distribution}"
-            )
+            expected = "expected lognormal, tabulated, discrete, empirical, or the name of a continuous distribution "
+            expected += f"of scipy.stats such as norm, uniform, truncnorm, not {self.distribution}"
+            raise InputError("", "variable.distribution", expected)
         names = [name.strip() for name in (known.shapes or "").split(",") if name.strip()]
         given = self.model_extra
         for name in given:
             if name not in names:
                 expected = f"unknown key; {self.distribution} has {', '.join([*names, 'loc', 'scale'])}"
-                raise InputError("", f"distribution.{name}", expected)
+                raise InputError("", f"variable.{name}", expected)
         for name in names:
             value = given.get(name)
             if isinstance(value, bool) or not isinstance(value, (int, float)) or not np.isfinite(value):
                 expected = f"expected a number, as {self.distribution} of scipy.stats has {', '.join(names)}"
-                raise InputError("", f"distribution.{name}", expected)
+                raise InputError("", f"variable.{name}", expected)
         if not np.isfinite([self.median, self.mean, self._frozen.std()]).all():
             raise ValueError(f"expected parameters by which {self.distribution} has a mean and a variance")
         return self
