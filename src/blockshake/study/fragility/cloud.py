@@ -237,10 +237,10 @@ def cloud_of_case(samples, case, seed, largest_drift):
         },
     )
     for name, of in ESTIMATES.items():
-        fitted, limits = zip(*(_estimate(of, fine, *found[method]) for method in METHODS), strict=True)
+        values, limits = zip(*(_estimate(of, fine, *found[method]) for method in METHODS), strict=True)
         dims = ("method", "fine_intensity") if name == "curve" else ("method",)
         result[name], result[f"{name}_interval"] = (
-            (dims, np.stack(fitted)),
+            (dims, np.stack(values)),
             (("method", "bound", *dims[1:]), np.stack(limits)),
         )
     asked = drawn.intensity
