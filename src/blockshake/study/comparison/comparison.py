@@ -109,9 +109,9 @@ def compare_models(ensembles, twins, measured):
         models, ``other`` the second: ``distance``, the energy distance of the ensembles, with ``distance_chance``;
         ``history_difference`` and ``parting_time`` of the ``common`` samples. Of the numerics, NaN without twins:
         ``floor`` and ``horizon(model, twin)``. Against the measured curves, NaN without any: ``score(model)`` and
-        ``score_difference(model, other)``. Of models with fewer samples than rigid NSCD, those of `two_levels`. Limits of 95 %, ``NAME_interval(bound, ...)``: of medians by order
-        statistics, of range, width and scores by bootstrap. NaN where an ensemble has fewer than three samples, of a
-        range six; times infinite where nothing parts.
+        ``score_difference(model, other)``. Of models with fewer samples than rigid NSCD those of `two_levels`. Limits
+        of 95 %, ``NAME_interval(bound, ...)``: of medians by order statistics, of range, width and scores by bootstrap.
+        NaN where an ensemble has fewer than three samples, of a range six; times infinite where nothing parts.
     """
     models = list(ensembles)
     counted = {model: counted_samples(one) for model, one in ensembles.items()}

@@ -54,9 +54,9 @@ def two_level_mean(costly, cheap, many):
     -----
     Regression estimator of two-phase sampling (Cochran 1977, Sampling Techniques, section 12.6); with the best
     coefficient, that of least squares, its variance is ``s^2 / n (1 - r^2 (1 - n / N))`` (also Peherstorfer,
-    Willcox and Gunzburger 2016, SIAM J. Sci. Comput. 38, for two models). The variance that is used is Cochran's conditional one,
-    which knows that the coefficient is estimated; the limits are Student's with n - 2 degrees of freedom. Its bias is
-    of the order 1 / n.
+    Willcox and Gunzburger 2016, SIAM J. Sci. Comput. 38, for two models). The variance that is used is Cochran's
+    conditional one, which knows that the coefficient is estimated; the limits are Student's with n - 2 degrees of
+    freedom. The bias is of the order 1 / n.
     """
     size, nothing = len(costly), TwoLevelMean(*np.full(6, np.nan))
     if size < SURE_FROM or np.ptp(costly) == 0.0 or np.ptp(cheap) == 0.0:
