@@ -43,7 +43,7 @@ def study_cost(path):
         for case in config.cases:
             structure, motion = (
                 load_structure(case.structure),
-                DrawnMotions.of(case.model_dump()).strongest()[0],
+                next(DrawnMotions.of(case.model_dump()).strongest()),
             )
             trial = {"model": solver_of(model).name, **settings.model_dump()}
             asked = _runs(config, model, case)

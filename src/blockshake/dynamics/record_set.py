@@ -49,7 +49,7 @@ class Intensity(Strict):
         return motion_figures(motion)[{"pga": "peak_acceleration", "pgv": "peak_velocity"}[self.measure]]
 
 
-class Record(NamedTuple):
+class SetRecord(NamedTuple):
     """A motion of a set: name and path of its file, its factor, and the level that it is scaled to, if any."""
 
     name: str
@@ -85,7 +85,7 @@ def read_records(source):
 
     Returns
     -------
-    tuple of Record
+    tuple of SetRecord
 
     Raises
     ------
@@ -95,10 +95,10 @@ def read_records(source):
     """
     path = Path(source)
     if not is_record_set(path):
-        return (Record(path.stem, str(source)),)
+        return (SetRecord(path.stem, str(source)),)
     if path.is_dir():
         files = sorted(file for file in path.iterdir() if file.is_file() and not file.name.startswith("."))
-        records = [Record(file.name, str(file)) for file in files]
+        records = [SetRecord(file.name, str(file)) for file in files]
     else:
         header, *rows = _rows(path)
         for name in header:
@@ -130,7 +130,7 @@ def _record(table, place, header, row):
     for key, value in numbers.items():
         if not 0.0 < value < np.inf:
             raise InputError(table, f"{place}, {key}", f"expected a number above 0, not '{cells[key]}'")
-    return Record(Path(name).name, path, **numbers)
+    return SetRecord(Path(name).name, path, **numbers)
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,7 @@ class DrawnMotions:
 
     Attributes
     ----------
-    records : tuple of Record
+    records : tuple of SetRecord
     baseline : str or float
         As for `load_motion`.
     scale : float
@@ -170,7 +170,7 @@ class DrawnMotions:
         return cls(records, case["baseline"], case["scale"], asked, {} if loaded is None else loaded)
 
     def draw(self, sample, seed):
-        """`Record` of a sample by its number.
+        """`SetRecord` of a sample by its number.
 
         Notes
         -----
@@ -200,6 +200,6 @@ class DrawnMotions:
         return scaled(motion, factor * self.scale, record.path)
 
     def strongest(self):
-        """Every record's motion, at the highest level."""
-        highest = self.intensity.levels[-1:] or (None,)
-        return [self.motion(one._replace(level=highest[0] or one.level)) for one in self.records]
+        """Generator of every record's motion, at the highest level."""
+        (highest,) = self.intensity.levels[-1:] or (None,)
+        yield from (self.motion(one._replace(level=highest or one.level)) for one in self.records)

@@ -107,7 +107,9 @@ def _study_line(source):
         models.append(f"{model} ({' to '.join(map(str, dict.fromkeys((counts[0], counts[-1]))))} samples)")
     count = f"{len(config.cases)} case{'s' * (len(config.cases) != 1)}"
     loaded = {}
-    motions = {case.name: DrawnMotions.of(case.model_dump(), loaded).strongest() for case in config.cases}
+    motions = {
+        case.name: list(DrawnMotions.of(case.model_dump(), loaded).strongest()) for case in config.cases
+    }
     for name in config.ladder.motions:
         loaded[name, config.ladder.baseline] = load_motion(name, baseline=config.ladder.baseline)
     records = [f"  {name}: {provenance(motion.attributes)}" for (name, _), motion in loaded.items()]

@@ -72,10 +72,11 @@ def check_named(config, where):
             drawn = DrawnMotions.of(case.model_dump(), loaded)
             for record in drawn.records:
                 check_plain(record.path, case.motion, record.name)
-            shaken.append(drawn.strongest())
+            motions = list(drawn.strongest())
+        shaken.append(motions[0])
         climbs = config.fragility is not None and case.name in config.fragility.cases
         if case.input == COMMANDED or climbs:
-            for motion in shaken[-1]:
+            for motion in motions:
                 check_window(motion, case.duration, where, f"{key}.duration")
         if case.structure not in structures:
             structures[case.structure] = check_structure(case.structure, where, key)
@@ -84,7 +85,7 @@ def check_named(config, where):
             check_measured(case, tested, where, f"{key}.measured")
     check_samples(config.ensemble, structures, where)
     for index, case in enumerate(config.cases):
-        check_simulations(config, index, structures[case.structure], shaken[index][0], where)
+        check_simulations(config, index, structures[case.structure], shaken[index], where)
     for folder in config.diagnosis.campaigns:
         with faults_of(where, "diagnosis.campaigns"):
             load_campaign(folder)

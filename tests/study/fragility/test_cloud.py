@@ -61,6 +61,30 @@ def test_falls_add_to_the_samples_that_exceed_the_limit():
     assert cloud.median < MEDIAN
 
 
+def test_limits_hold_where_some_samples_fall():
+    """The logistic part has the limits of many samples only: 60 are held against their 95 % from below."""
+    generator, size = np.random.default_rng(6), 60
+    truth = Cloud(-SLOPE * np.log(MEDIAN), SLOPE, DEVIATION, -6.0, 4.0, 1.0)
+    medians, dispersions = [], []
+    for _ in range(REPEATS):
+        intensity, demand = cloud_of(generator, size)
+        fell = generator.random(size) < expit(-6.0 + 4.0 * np.log(intensity))
+        _, drawn = fit_cloud(intensity, demand, fell, LIMIT)
+        medians.append(_tails(drawn.median))
+        dispersions.append(_tails(drawn.dispersion))
+    least = binom.ppf(0.001, REPEATS, 0.95)
+    assert held(medians, truth.median) >= least
+    assert held(dispersions, truth.dispersion) >= least
+
+
+def test_samples_that_do_not_move_tell_nothing_of_the_line():
+    intensity, demand = cloud_of(np.random.default_rng(7))
+    still = np.append(intensity, [0.1, 0.2]), np.append(demand, [1e-9, 0.0])
+    fitted, _ = fit_cloud(*still, np.zeros(32, dtype=bool), LIMIT)
+    alone, _ = fit_cloud(intensity, demand, np.zeros(30, dtype=bool), LIMIT)
+    assert fitted[:5] == alone[:5]
+
+
 def test_a_falling_trend_has_no_median():
     assert np.isinf(Cloud(-5.0, -1.0, 0.4, -np.inf, 0.0, 0.0).median)
 

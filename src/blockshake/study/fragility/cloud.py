@@ -18,27 +18,24 @@ from blockshake.study.ensembles.envelope import BOUNDS, counted_samples
 from blockshake.study.fragility.capacity import estimate_capacity
 from blockshake.study.fragility.fragility import ESTIMATES, POINTS
 
-METHODS = ("regression", "counts")
-_DRAWS = 2000  # of the parameters of a regression
+_DRAWN = 2000  # of the parameters of a regression
+_STILL = 1e-4  # m, the noise of a marker: a sample that moves less tells nothing of a line
 _STEPS = 60  # of a bisection, and of Newton's method
 _FAR = (
     20.0  # in the logarithm of the intensity, from the middle of the samples to where no level is looked for
 )
 _DESCRIBED = {
-    "intensity": ("measure of the motion of the sample", None),
-    "peak_acceleration": ("peak ground acceleration along x of the motion of the sample", "m/s2"),
-    "demand": ("largest displacement of a marker along x relative to the slab", "m"),
-    "fell": ("1 where the sample collapsed, or still fell as the window ended", "1"),
-    "fine_intensity": ("measure of the motion", None),
-    "median": ("intensity at which half of the samples do not pass", None),
-    "median_interval": ("limits of it", None),
-    "dispersion": ("standard deviation of the logarithm of that intensity", "1"),
-    "dispersion_interval": ("limits of it", "1"),
-    "safe": ("intensity at which 5 % of the samples do not pass", None),
-    "safe_interval": ("limits of it", None),
-    "curve": ("probability of not passing", "1"),
-    "curve_interval": ("limits of it", "1"),
+    "intensity": "measure of the motion of the sample",
+    "fine_intensity": "measure of the motion",
+    "median": "intensity at which half of the samples do not pass",
+    "safe": "intensity at which 5 % of the samples do not pass",
+    "dispersion": "standard deviation of the logarithm of the intensity at which a sample does not pass",
+    "curve": "probability of not passing",
+    "demand": "largest displacement of a marker along x relative to the slab",
+    "peak_acceleration": "peak ground acceleration along x of the motion of the sample",
+    "fell": "1 where the sample collapsed, or still fell as the window ended",
 }
+_UNITS = {"dispersion": "1", "curve": "1", "demand": "m", "peak_acceleration": "m/s2", "fell": "1"}
 
 
 class Cloud(NamedTuple):
@@ -98,7 +95,7 @@ def fit_cloud(intensity, demand, fell, limit):
     intensity : float64 array, shape (n_samples,)
         Above 0.
     demand : float64 array, shape (n_samples,)
-        Above 0; that of samples that fell is not used [m].
+        That of samples that fell, or stay within a tenth of a millimetre, is not used [m].
     fell : bool array, shape (n_samples,)
     limit : float
         Demand that counts as not passing [m].
@@ -106,7 +103,7 @@ def fit_cloud(intensity, demand, fell, limit):
     Returns
     -------
     fitted, drawn : Cloud
-        Numbers, and arrays (2000,); NaN where fewer than three samples of different intensities stand.
+        Numbers, and arrays (2000,); NaN where fewer than three samples of different intensities move and stand.
 
     Notes
     -----
@@ -117,24 +114,25 @@ def fit_cloud(intensity, demand, fell, limit):
     information. The regression is Firth's (1993), which stays finite where one intensity parts falls from the others.
     The draws are the same for all samples.
     """
-    log, stands = np.log(intensity), ~np.asarray(fell, dtype=bool)
-    x, y = log[stands], np.log(demand[stands]) - np.log(limit)
+    log, fell = np.log(intensity), np.asarray(fell, dtype=bool)
+    used = ~fell & (demand > _STILL)
+    x, y = log[used], np.log(demand[used] / limit)
     freedom, middle = len(x) - 2, float(np.mean(log)) if len(log) else np.nan
     squares = float(((x - x.mean()) ** 2).sum()) if len(x) else 0.0
     if freedom < 1 or squares == 0.0:
-        return Cloud(*np.full(6, np.nan)), Cloud(*np.full((6, _DRAWS), np.nan))
+        return Cloud(*np.full(6, np.nan)), Cloud(*np.full((6, _DRAWN), np.nan))
     slope = float((x - x.mean()) @ y / squares)
     deviation = float(np.sqrt(((y - y.mean() - slope * (x - x.mean())) ** 2).sum() / freedom))
-    bits = np.random.PCG64(1).random_raw(5 * _DRAWS).reshape(5, _DRAWS)
+    bits = np.random.PCG64(1).random_raw(5 * _DRAWN).reshape(5, _DRAWN)
     chances = ((bits >> np.uint64(11)) + 0.5) * 2.0**-53
     scores = ndtri(chances[:4])
     deviations = deviation * np.sqrt(0.5 * freedom / gammaincinv(0.5 * freedom, chances[4]))
     slopes = slope + deviations * scores[0] / np.sqrt(squares)
     means = y.mean() + deviations * scores[1] / np.sqrt(len(x))
-    if stands.all():
-        falls, fallen = (-np.inf, 0.0), (np.full(_DRAWS, -np.inf), np.zeros(_DRAWS))
+    if not fell.any():
+        falls, fallen = (-np.inf, 0.0), (np.full(_DRAWN, -np.inf), np.zeros(_DRAWN))
     else:
-        falls, covariance = logistic(log, ~stands)
+        falls, covariance = logistic(log, fell)
         fallen = falls[:, None] + np.linalg.cholesky(covariance) @ scores[2:]
     fitted = Cloud(y.mean() - slope * x.mean(), slope, deviation, *falls, middle)
     return fitted, Cloud(means - slopes * x.mean(), slopes, deviations, *fallen, middle)
@@ -172,8 +170,8 @@ def cloud_of_case(samples, case, seed, largest_drift):
 
     Parameters
     ----------
-    samples : xarray.Dataset or path
-        From `sample_figures`.
+    samples : path
+        File from `sample_figures`.
     case : dict
         ``structure``, ``motion``, ``scale``, ``baseline`` and ``intensity`` of the configuration.
     seed : int
@@ -185,10 +183,10 @@ def cloud_of_case(samples, case, seed, largest_drift):
     -------
     xarray.Dataset
         By counted ``sample``: ``record``, ``intensity``, ``peak_acceleration`` [m/s2], ``demand`` [m], ``fell``. By
-        ``method``: ``median``, ``dispersion``, ``safe``, each with its ``_interval(method, bound)``, and
-        ``curve(method, fine_intensity)`` with its limits; NaN where the samples do not tell. ``regression`` is
+        ``fit``: ``median``, ``dispersion``, ``safe``, each with its ``_interval(fit, bound)``, and
+        ``curve(fit, fine_intensity)`` with its limits; NaN where the samples do not tell. ``regression`` is
         `fit_cloud`; ``counts`` the lognormal curve of largest likelihood of passing and not passing, Eq. (11) of Baker
-        (2015), Earthquake Spectra 31. Attributes: ``measure``, ``period``, ``levels``, ``units``,
+        (2015), Earthquake Spectra 31. Attributes: ``measure``, ``period``, number of ``levels`` and of ``records``,
         ``largest_drift``, and ``slope`` and ``intercept`` of the `Cloud`.
 
     Notes
@@ -196,65 +194,61 @@ def cloud_of_case(samples, case, seed, largest_drift):
     Passing or not at one intensity tells that a capacity lies above or below it. The likelihood of such bounds,
     `fit_capacity`'s, is Baker's product of binomials.
     """
-    counted = counted_samples(samples if isinstance(samples, xr.Dataset) else load_made(samples))
+    counted = counted_samples(load_made(samples))
     limit = largest_drift or half_width(load_structure(case["structure"]))
     drawn = DrawnMotions.of(case)
     records = [drawn.draw(sample, seed) for sample in counted["sample"].values]
     motions = [drawn.motion(record) for record in records]
+    told = [case["scale"] * one.level if one.level else None for one in records]
     intensity = np.array(
-        [
-            case["scale"] * record.level if record.level else drawn.intensity.of(motion)
-            for record, motion in zip(records, motions, strict=True)
-        ]
+        [one or drawn.intensity.of(motion) for one, motion in zip(told, motions, strict=True)]
     )
     demand = counted["peak"].sel(frame="slab", drop=True).max("marker").to_numpy()
     fell = np.isin(counted["status"].values, FALLEN)
     failed = fell | (demand > limit)
     differ = len(np.unique(intensity)) > 1  # else no curve is told
     fine = np.geomspace(intensity.min(), intensity.max(), POINTS) if differ else np.arange(1.0, POINTS + 1.0)
+    cloud, likely = fit_cloud(intensity, demand, fell, limit)
     bounds = np.where(failed, 0.0, intensity), np.where(failed, intensity, np.inf)
-    fitted, likely = fit_cloud(intensity, demand, fell, limit)
-    found = {
-        "regression": (fitted, likely, _tails),
+    fits = {
+        "regression": (cloud, likely, _tails),
         "counts": estimate_capacity(*(bounds if differ else ([], []))),
     }
+    peaks = [motion_figures(motion)["peak_acceleration"] for motion in motions]
+    by_sample = {
+        "intensity": intensity,
+        "peak_acceleration": peaks,
+        "demand": demand,
+        "fell": fell.astype(int),
+    }
     result = xr.Dataset(
+        {name: ("sample", values) for name, values in by_sample.items()},
         {
-            "record": ("sample", [record.name for record in records], {"long_name": "motion of the sample"}),
-            "intensity": ("sample", intensity),
-            "peak_acceleration": (
-                "sample",
-                np.array([motion_figures(motion)["peak_acceleration"] for motion in motions]),
-            ),
-            "demand": ("sample", demand),
-            "fell": ("sample", fell.astype(int)),
-        },
-        coords={
             "sample": counted["sample"],
-            "method": list(METHODS),
+            "record": ("sample", [one.name for one in records], {"long_name": "motion of the sample"}),
+            "fit": list(fits),
             "bound": list(BOUNDS),
             "fine_intensity": fine,
         },
     )
     for name, of in ESTIMATES.items():
-        values, limits = zip(*(_estimate(of, fine, *found[method]) for method in METHODS), strict=True)
-        dims = ("method", "fine_intensity") if name == "curve" else ("method",)
-        result[name], result[f"{name}_interval"] = (
-            (dims, np.stack(values)),
-            (("method", "bound", *dims[1:]), np.stack(limits)),
-        )
-    asked = drawn.intensity
-    unit = "m/s" if asked.measure == "pgv" else "m/s2"
-    describe(result, {name: (words, units or unit) for name, (words, units) in _DESCRIBED.items()})
+        dims = ("fine_intensity",) if name == "curve" else ()
+        values = [np.asarray(of(fitted, fine), dtype=float) for fitted, *_ in fits.values()]
+        limits = [limits_over(of(around, fine[:, None])) for _, around, limits_over in fits.values()]
+        result[name] = ("fit", *dims), np.stack(values)
+        result[f"{name}_interval"] = ("fit", "bound", *dims), np.stack(limits)
+    unit = "m/s" if drawn.intensity.measure == "pgv" else "m/s2"
+    described = {name: (words, _UNITS.get(name, unit)) for name, words in _DESCRIBED.items()}
+    described |= {f"{name}_interval": (f"limits of the {name}", described[name][1]) for name in ESTIMATES}
+    describe(result, described)
     result.attrs = {
         "title": "fragility over the intensity of drawn motions",
-        "measure": asked.measure,
-        "period": asked.period or 0.0,
-        "levels": len(asked.levels),
-        "slope": float(fitted.slope),
-        "intercept": float(fitted.intercept),
-        "records": len({record.name for record in records}),
-        "units": unit,
+        "measure": drawn.intensity.measure,
+        "period": drawn.intensity.period or 0.0,
+        "levels": len(drawn.intensity.levels),
+        "records": len({one.name for one in records}),
+        "slope": float(cloud.slope),
+        "intercept": float(cloud.intercept),
         "largest_drift": float(limit),
         "confidence": CONFIDENCE,
     }
@@ -262,11 +256,6 @@ def cloud_of_case(samples, case, seed, largest_drift):
 
 
 def _tails(values):
-    """Limits of drawn values along the last axis; a value that is none counts as infinite."""
+    """Limits of drawn values along the last axis."""
     tail = 0.5 - 0.5 * CONFIDENCE
     return np.quantile(values, (tail, 1.0 - tail), axis=-1, method="closest_observation")
-
-
-def _estimate(of, fine, fitted, likely, limits):
-    """Value and limits of a function of a fragility, float64 arrays (...) and (2, ...)."""
-    return np.asarray(of(fitted, fine), dtype=float), limits(of(likely, fine[:, None]))

@@ -12,8 +12,7 @@ from blockshake.pages.wording import (
     number,
     percent,
 )
-from blockshake.statistics.intervals import share_interval
-from blockshake.study.fragility.figure import measure_words, plot_clouds
+from blockshake.study.fragility.figure import failed, measure_words, plot_clouds
 from blockshake.study.fragility.fragility import SAFE
 
 _METHODS = {"regression": "cloud (regression)", "counts": "counts (maximum likelihood)"}
@@ -31,35 +30,30 @@ def cloud_blocks(content):
         return []
     limits = " or ".join(sorted({millimetres(one.attrs["largest_drift"]) for one in clouds.values()}))
     words = (
-        "Every sample is shaken once, by a motion of its own. It does not pass when it collapses, still falls as its "
-        f"window ends, or a marker moves along x by more than {limits} mm from the slab. The cloud is the regression "
-        "of the logarithm of that displacement on the logarithm of the intensity, over the samples that stand, with a "
-        "logistic regression of the falls (Jalayer and Cornell 2009). The counts are fitted by the lognormal curve of "
-        "largest likelihood (Baker 2015, Eq. 11). The regression needs no sample that fails, and rests on its straight "
-        "line; the counts need both outcomes, and rest on no displacement. The dispersion is the standard deviation of "
-        "the logarithm of the intensity at which a sample fails, for the regression half the logarithm of the ratio of "
-        "its 84 and 16 % intensities. It holds the scatter from motion to motion and that of the sampled variables."
+        "Every sample is shaken once, by a motion of its own. It does not pass when it collapses, still falls as "
+        f"its window ends, or a marker moves along x by more than {limits} mm from the slab. The cloud is the "
+        "regression of the logarithm of that displacement on the logarithm of the intensity, over the samples that "
+        "stand and move, with a logistic regression of the falls (Jalayer and Cornell 2009). The counts are fitted "
+        "by the lognormal curve of largest likelihood (Baker 2015, Eq. 11). The regression needs no sample that "
+        "fails, and rests on its straight line; the counts need both outcomes, and rest on no displacement. The "
+        "dispersion is the standard deviation of the logarithm of the intensity at which a sample fails, for the "
+        "regression half the logarithm of the ratio of its 84 and 16 % intensities. It holds the scatter from "
+        "motion to motion and that of the sampled variables."
     )
-    tables = [_stripes(clouds)] if any(one.attrs["levels"] for one in clouds.values()) else []
     return [
         Heading("Motions that the samples draw", "clouds"),
         Text(words),
         Figure(
             "Left: largest displacement of a marker from the slab over the intensity, and the regression; crosses: "
-            "samples that fell, at the upper edge. Right: probability of not passing by both methods, with limits "
-            f"of 95 %. Dotted: {percent(SAFE)} %.",
+            "samples that fell, at the upper edge. Right: probability of not passing by both methods, with limits of "
+            "95 %; squares: share of the samples at a level that do not pass, with limits of Clopper and Pearson. "
+            f"Dotted: {percent(SAFE)} %.",
             svg_of(
                 plot_clouds, {f"{name}, {model_label(model)}": one for (name, model), one in clouds.items()}
             ),
         ),
         _table(clouds),
-        *tables,
     ]
-
-
-def failed(cloud):
-    """Which samples did not pass, bool array."""
-    return ((cloud["fell"] == 1) | (cloud["demand"] > cloud.attrs["largest_drift"])).to_numpy()
 
 
 def _table(clouds):
@@ -69,12 +63,11 @@ def _table(clouds):
             f"{count_words(cloud.sizes['sample'], 'sample')} of {count_words(cloud.attrs['records'], 'motion')}, "
             f"{int(failed(cloud).sum())} not passed"
         )
+        measure = "{} [{}]".format(*measure_words(cloud))
         for method, label in _METHODS.items():
-            one = cloud.sel(method=method)
-            rows.append((
-                name, model_label(model), drawn, label, "{} [{}]".format(*measure_words(cloud)),
-                *(_limited(one, what) for what in ("median", "dispersion", "safe")),
-            ))  # fmt: skip
+            one = cloud.sel(fit=method)
+            figures = [_limited(one, what) for what in ("median", "dispersion", "safe")]
+            rows.append((name, model_label(model), drawn, label, measure, *figures))
     return Table(
         f"Fragilities: intensity at which half and {percent(SAFE)} % of the samples do not pass, and dispersion, with "
         "limits of 95 % in brackets: of the regression by its parameters' posterior, of the counts by likelihood. "
@@ -92,23 +85,3 @@ def _limited(one, name):
         return number(value)
     low, high = (number(limit) if np.isfinite(limit) else "no limit" for limit in limits)
     return f"{number(value)} [{low}, {high}]"
-
-
-def _stripes(clouds):
-    rows = []
-    for (name, model), cloud in clouds.items():
-        at = cloud["intensity"].to_numpy()
-        for level in np.unique(at) if cloud.attrs["levels"] else ():
-            here = failed(cloud)[at == level]
-            low, high = map(percent, share_interval(int(here.sum()), len(here)))
-            rows.append((
-                name, model_label(model), "{} [{}]".format(*measure_words(cloud)), number(level), str(len(here)),
-                f"{percent(here.mean())} [{low}, {high}]",
-                millimetres(np.median(cloud["demand"].to_numpy()[at == level])),
-            ))  # fmt: skip
-    return Table(
-        "Levels that the motions are scaled to: share of the samples that does not pass, with Clopper-Pearson limits "
-        "of 95 %, and median displacement, of samples that fell until their end.",
-        ("Case", "Model", "Intensity", "Level", "Samples", "Not passed [%]", "Displacement, median [mm]"),
-        tuple(rows), "lllrrrr",
-    )  # fmt: skip

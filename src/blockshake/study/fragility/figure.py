@@ -7,6 +7,7 @@ from matplotlib.ticker import PercentFormatter
 
 from blockshake.pages.drawing import BLACK, BLUE, GREY, LIGHT_GREY, RED, new_figure
 from blockshake.pages.wording import SHOWN_QUANTILES, SQUARED
+from blockshake.statistics.intervals import share_interval
 from blockshake.study.fragility.fragility import SAFE
 
 _ROW = 0.055  # m of paper
@@ -68,6 +69,11 @@ def measure_words(cloud):
     return name, "m/s" if cloud.attrs["measure"] == "pgv" else f"m/s{SQUARED}"
 
 
+def failed(cloud):
+    """Which samples of a cloud did not pass, bool array."""
+    return ((cloud["fell"] == 1) | (cloud["demand"] > cloud.attrs["largest_drift"])).to_numpy()
+
+
 def plot_clouds(clouds):
     """Figure of the samples of each case by a model over the intensity of their motions, a row each, and fragilities.
 
@@ -87,10 +93,14 @@ def plot_clouds(clouds):
         left.axhline(limit, color=RED, linestyle="--", linewidth=0.8)
         left.set(title=title, xscale="log", yscale="log", ylabel="displacement [mm]")
         for method, colour in colours.items():
-            one = cloud.sel(method=method)
+            one = cloud.sel(fit=method)
             limits = (one["curve_interval"].sel(bound=side) for side in ("lower", "upper"))
             right.fill_between(fine, *limits, color=colour, alpha=0.2, linewidth=0.0)
             right.plot(fine, one["curve"], color=colour)
+        for level in np.unique(at) if cloud.attrs["levels"] else ():
+            here = failed(cloud)[at == level]
+            right.vlines(level, *share_interval(here.sum(), len(here)), color=BLACK, linewidth=0.8)
+            right.plot(level, here.mean(), color=BLACK, marker="s", markersize=3.5)
         right.axhline(SAFE, color=GREY, linestyle=":", linewidth=0.8)
         right.set(title=title, ylabel="probability", ylim=(-0.03, 1.03))
         right.yaxis.set_major_formatter(PercentFormatter(1.0))
