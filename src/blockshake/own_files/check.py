@@ -8,7 +8,7 @@ from blockshake.diagnosis.nominal.planned_test import planned_motion
 from blockshake.dynamics.baseline import AUTO
 from blockshake.dynamics.intensity import strong_until
 from blockshake.dynamics.load_motion import load_motion, provenance
-from blockshake.dynamics.record_set import DrawnMotions
+from blockshake.dynamics.record_set import DrawnMotions, is_record_set, read_records
 from blockshake.dynamics.synthetic_motion import SyntheticMotion
 from blockshake.errors import InputError, faults_of
 from blockshake.files import load_yaml, shipped_names
@@ -51,6 +51,8 @@ def check_file(source, baseline=AUTO):
         return _campaign_line(Path(source))
     if source in shipped_names("structures"):
         return _structure_line(source)
+    if is_record_set(source):
+        return "\n".join(_motion_line(record.path, baseline) for record in read_records(source))
     if Path(source).suffix not in (".yaml", ".yml"):
         return _motion_line(source, baseline)
     keys = load_yaml(source).keys()
@@ -161,6 +163,16 @@ def _study_remarks(config, motions):
     }.items():
         yield from (f"{name} at {scale:.4g}: {remark}" for remark in motion_remarks(motion))
     for case in config.cases:
+        count = (
+            len(motions[case.name]) * max(1, len(case.intensity.levels))
+            if case.intensity
+            else config.ensemble.size
+        )
+        if count < config.ensemble.size:
+            yield (
+                f"{case.name}: {config.ensemble.size} samples draw {count} motions, each several times: limits that "
+                "take samples as independent are too narrow"
+            )
         length = max(motion.duration for motion in motions[case.name])
         end = max(map(strong_until, motions[case.name]))
         if case.duration > length + _LATE:

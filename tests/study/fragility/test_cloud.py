@@ -85,6 +85,20 @@ def test_samples_that_do_not_move_tell_nothing_of_the_line():
     assert fitted[:5] == alone[:5]
 
 
+def test_samples_that_come_five_times_are_known_as_well_as_once():
+    generator = np.random.default_rng(8)
+    intensity, demand = cloud_of(generator)
+    fell = generator.random(30) < 0.2
+    once = fit_cloud(intensity, demand, fell, LIMIT)
+    often = fit_cloud(*(np.repeat(one, 5) for one in (intensity, demand, fell)), LIMIT, 0.2)
+    for one, other in zip(once, often, strict=True):
+        for name in ("slope", "deviation", "intercept"):
+            np.testing.assert_allclose(getattr(one, name), getattr(other, name))
+    lower, upper = stripes(generator)
+    wide = estimate_capacity(np.repeat(lower, 5), np.repeat(upper, 5), 0.2)
+    np.testing.assert_array_equal(wide[1].median, estimate_capacity(lower, upper)[1].median)
+
+
 def test_a_falling_trend_has_no_median():
     assert np.isinf(Cloud(-5.0, -1.0, 0.4, -np.inf, 0.0, 0.0).median)
 

@@ -256,9 +256,16 @@ def test_an_empirical_variable_gives_the_values_of_its_column_once_each(tmp_path
     [
         ({"distribution": "norml"}, r"b\.distribution: expected lognormal, .* scipy\.stats such as norm"),
         ({"distribution": "poisson", "mu": 3}, "the name of a continuous distribution"),
-        ({"distribution": "truncnorm", "a": -2}, r"b\.b: expected a number, as truncnorm"),
-        ({"distribution": "normal", "mean": 0.7}, r"b\.mean: unknown key; normal has loc, scale"),
+        (
+            {"distribution": "truncnorm", "a": -2},
+            r"b\.b: expected the keys a, b, loc, scale, as scipy\.stats\.truncnorm",
+        ),
+        (
+            {"distribution": "normal", "mean": 0.7},
+            r"b\.mean: expected the keys loc, scale, as scipy\.stats\.norm",
+        ),
         ({"distribution": "normal", "loc": 0.7, "scale": 0}, r"b\.scale: "),
+        ({"distribution": "beta", "a": "x", "b": 2}, r"b\.a: input should be a valid number"),
         ({"distribution": "cauchy"}, "has a mean and a variance"),
         ({"distribution": "discrete", "values": [1, 2], "probabilities": [0.5, 0.6]}, "and a sum of 1"),
         ({"distribution": "discrete", "values": [2, 1]}, "values that rise"),

@@ -87,7 +87,7 @@ class Cloud(NamedTuple):
         return np.where(np.isnan(spread), np.inf, spread)
 
 
-def fit_cloud(intensity, demand, fell, limit):
+def fit_cloud(intensity, demand, fell, limit, weight=1.0):
     """`Cloud` of samples, and many whose parameters are drawn as the samples leave them open.
 
     Parameters
@@ -99,6 +99,8 @@ def fit_cloud(intensity, demand, fell, limit):
     fell : bool array, shape (n_samples,)
     limit : float
         Demand that counts as not passing [m].
+    weight : float
+        Share of the samples that are independent of each other [1]: of samples that come m times, 1 / m.
 
     Returns
     -------
@@ -117,23 +119,23 @@ def fit_cloud(intensity, demand, fell, limit):
     log, fell = np.log(intensity), np.asarray(fell, dtype=bool)
     used = ~fell & (demand > _STILL)
     x, y = log[used], np.log(demand[used] / limit)
-    freedom, middle = len(x) - 2, float(np.mean(log)) if len(log) else np.nan
-    squares = float(((x - x.mean()) ** 2).sum()) if len(x) else 0.0
-    if freedom < 1 or squares == 0.0:
+    size, middle = weight * len(x), float(np.mean(log)) if len(log) else np.nan
+    squares, freedom = weight * float(((x - x.mean()) ** 2).sum()) if len(x) else 0.0, size - 2.0
+    if freedom < 1.0 or squares == 0.0:
         return Cloud(*np.full(6, np.nan)), Cloud(*np.full((6, _DRAWN), np.nan))
-    slope = float((x - x.mean()) @ y / squares)
-    deviation = float(np.sqrt(((y - y.mean() - slope * (x - x.mean())) ** 2).sum() / freedom))
+    slope = float(weight * (x - x.mean()) @ y / squares)
+    deviation = float(np.sqrt(weight * ((y - y.mean() - slope * (x - x.mean())) ** 2).sum() / freedom))
     bits = np.random.PCG64(1).random_raw(5 * _DRAWN).reshape(5, _DRAWN)
     chances = ((bits >> np.uint64(11)) + 0.5) * 2.0**-53
     scores = ndtri(chances[:4])
     deviations = deviation * np.sqrt(0.5 * freedom / gammaincinv(0.5 * freedom, chances[4]))
     slopes = slope + deviations * scores[0] / np.sqrt(squares)
-    means = y.mean() + deviations * scores[1] / np.sqrt(len(x))
+    means = y.mean() + deviations * scores[1] / np.sqrt(size)
     if not fell.any():
         falls, fallen = (-np.inf, 0.0), (np.full(_DRAWN, -np.inf), np.zeros(_DRAWN))
     else:
         falls, covariance = logistic(log, fell)
-        fallen = falls[:, None] + np.linalg.cholesky(covariance) @ scores[2:]
+        fallen = falls[:, None] + np.linalg.cholesky(covariance / weight) @ scores[2:]
     fitted = Cloud(y.mean() - slope * x.mean(), slope, deviation, *falls, middle)
     return fitted, Cloud(means - slopes * x.mean(), slopes, deviations, *fallen, middle)
 
@@ -187,12 +189,13 @@ def cloud_of_case(samples, case, seed, largest_drift):
         ``curve(fit, fine_intensity)`` with its limits; NaN where the samples do not tell. ``regression`` is
         `fit_cloud`; ``counts`` the lognormal curve of largest likelihood of passing and not passing, Eq. (11) of Baker
         (2015), Earthquake Spectra 31. Attributes: ``measure``, ``period``, number of ``levels`` and of ``records``,
-        ``largest_drift``, and ``slope`` and ``intercept`` of the `Cloud`.
+        ``weight`` of a sample in the limits, ``largest_drift``, and ``slope`` and ``intercept`` of the `Cloud`.
 
     Notes
     -----
     Passing or not at one intensity tells that a capacity lies above or below it. The likelihood of such bounds,
-    `fit_capacity`'s, is Baker's product of binomials.
+    `fit_capacity`'s, is Baker's product of binomials. Samples that draw the same record at the same level count
+    together as one in all limits, since records differ by more than the sampled variables do.
     """
     counted = counted_samples(load_made(samples))
     limit = largest_drift or half_width(load_structure(case["structure"]))
@@ -208,11 +211,12 @@ def cloud_of_case(samples, case, seed, largest_drift):
     failed = fell | (demand > limit)
     differ = len(np.unique(intensity)) > 1  # else no curve is told
     fine = np.geomspace(intensity.min(), intensity.max(), POINTS) if differ else np.arange(1.0, POINTS + 1.0)
-    cloud, likely = fit_cloud(intensity, demand, fell, limit)
+    weight = len(set(records)) / len(records) if records else 1.0
+    cloud, likely = fit_cloud(intensity, demand, fell, limit, weight)
     bounds = np.where(failed, 0.0, intensity), np.where(failed, intensity, np.inf)
     fits = {
         "regression": (cloud, likely, _tails),
-        "counts": estimate_capacity(*(bounds if differ else ([], []))),
+        "counts": estimate_capacity(*(bounds if differ else ([], [])), weight),
     }
     peaks = [motion_figures(motion)["peak_acceleration"] for motion in motions]
     by_sample = {
@@ -247,6 +251,7 @@ def cloud_of_case(samples, case, seed, largest_drift):
         "period": drawn.intensity.period or 0.0,
         "levels": len(drawn.intensity.levels),
         "records": len({one.name for one in records}),
+        "weight": weight,
         "slope": float(cloud.slope),
         "intercept": float(cloud.intercept),
         "largest_drift": float(limit),

@@ -40,6 +40,11 @@ def cloud_blocks(content):
         "regression half the logarithm of the ratio of its 84 and 16 % intensities. It holds the scatter from "
         "motion to motion and that of the sampled variables."
     )
+    if any(one.attrs["weight"] < 1.0 for one in clouds.values()):
+        words += (
+            " Samples that draw the same record at the same level count together as one in the limits here; the other "
+            "sections take all samples as independent, so that their limits are too narrow where records repeat."
+        )
     return [
         Heading("Motions that the samples draw", "clouds"),
         Text(words),

@@ -92,6 +92,8 @@ def plot_clouds(clouds):
         left.plot(at[~stands], np.full((~stands).sum(), top), color=RED, linestyle="none", marker="x")
         left.axhline(limit, color=RED, linestyle="--", linewidth=0.8)
         left.set(title=title, xscale="log", yscale="log", ylabel="displacement [mm]")
+        left.xaxis.set_major_formatter("{x:g}")
+        left.xaxis.set_minor_formatter("{x:g}")
         for method, colour in colours.items():
             one = cloud.sel(fit=method)
             limits = (one["curve_interval"].sel(bound=side) for side in ("lower", "upper"))
@@ -99,7 +101,13 @@ def plot_clouds(clouds):
             right.plot(fine, one["curve"], color=colour)
         for level in np.unique(at) if cloud.attrs["levels"] else ():
             here = failed(cloud)[at == level]
-            right.vlines(level, *share_interval(here.sum(), len(here)), color=BLACK, linewidth=0.8)
+            counts = cloud.attrs["weight"] * np.array([here.sum(), len(here)])
+            right.vlines(
+                level,
+                *share_interval(*counts),
+                color=BLACK,
+                linewidth=0.8,
+            )
             right.plot(level, here.mean(), color=BLACK, marker="s", markersize=3.5)
         right.axhline(SAFE, color=GREY, linestyle=":", linewidth=0.8)
         right.set(title=title, ylabel="probability", ylim=(-0.03, 1.03))
@@ -112,5 +120,5 @@ def plot_clouds(clouds):
         "cloud (regression)": Line2D([], [], color=BLUE),
         "counts (maximum likelihood)": Line2D([], [], color=RED),
     }
-    figure.legend(entries.values(), entries.keys(), loc="outside upper center", ncols=4)
+    figure.legend(entries.values(), entries.keys(), loc="outside upper center", ncols=2)
     return figure

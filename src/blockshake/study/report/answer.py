@@ -75,6 +75,8 @@ def _asked(content):
     samples = count_words(many, "sample") if few == many else f"{few} to {many} samples"
     used = [name for name in content.distributions if content.users(name)]
     kinds = dict.fromkeys(parameter_label(name).split(" of ")[0].split(",")[0] for name in used)
+    if any("records" in content.motions[case.motion].attrs for case in content.cases.values()):
+        kinds |= {"ground motion": None}
     uncertain = f"Uncertain: {listed(list(kinds))}." if kinds else ""
     return f"Asked: {cases}, by {listed(labels)}, {samples} each. {uncertain}".rstrip()
 

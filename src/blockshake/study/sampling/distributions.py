@@ -183,36 +183,32 @@ class OfScipy(_ByQuantiles):
     """A continuous variable by its name in `scipy.stats`, whose other keys are its shape parameters there."""
 
     model_config = ConfigDict(extra="allow", frozen=True)
+    __pydantic_extra__: dict[str, Finite] = Field(init=False)
     distribution: str = Field(description="name in scipy.stats; `normal` is its norm")
     loc: Finite = Field(0.0, description="as in scipy.stats, SI")
     scale: Positive = Field(1.0, description="as in scipy.stats, SI")
 
     @model_validator(mode="after")
     def _is_known(self):
-        known = getattr(scipy.stats, _OTHER_NAMES.get(self.distribution, self.distribution), None)
-        if not isinstance(known, scipy.stats.rv_continuous):
+        if not isinstance(self._known, scipy.stats.rv_continuous):
             expected = "expected lognormal, tabulated, discrete, empirical, or the name of a continuous distribution "
             expected += f"of scipy.stats such as norm, uniform, truncnorm, not {self.distribution}"
             raise InputError("", "variable.distribution", expected)
-        names = [name.strip() for name in (known.shapes or "").split(",") if name.strip()]
-        given = self.model_extra
-        for name in given:
-            if name not in names:
-                expected = f"unknown key; {self.distribution} has {', '.join([*names, 'loc', 'scale'])}"
-                raise InputError("", f"variable.{name}", expected)
-        for name in names:
-            value = given.get(name)
-            if isinstance(value, bool) or not isinstance(value, (int, float)) or not np.isfinite(value):
-                expected = f"expected a number, as {self.distribution} of scipy.stats has {', '.join(names)}"
-                raise InputError("", f"variable.{name}", expected)
+        names = [name.strip() for name in (self._known.shapes or "").split(",") if name.strip()]
+        for name in sorted(set(names) ^ set(self.model_extra)):
+            expected = f"expected the keys {', '.join([*names, 'loc', 'scale'])}, as scipy.stats.{self._known.name} has"
+            raise InputError("", f"variable.{name}", expected)
         if not np.isfinite([self.median, self.mean, self._frozen.std()]).all():
             raise ValueError(f"expected parameters by which {self.distribution} has a mean and a variance")
         return self
 
     @property
+    def _known(self):
+        return getattr(scipy.stats, _OTHER_NAMES.get(self.distribution, self.distribution), None)
+
+    @property
     def _frozen(self):
-        known = getattr(scipy.stats, _OTHER_NAMES.get(self.distribution, self.distribution))
-        return known(**self.model_extra, loc=self.loc, scale=self.scale)
+        return self._known(**self.model_extra, loc=self.loc, scale=self.scale)
 
     @property
     def mean(self):
