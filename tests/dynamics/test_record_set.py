@@ -90,7 +90,10 @@ def test_a_table_scales_its_records_or_sets_their_levels(folder):
     of = drawn(table)
     assert motion_figures(of.motion(of.records[0]))["peak_acceleration"] == pytest.approx(2.0, rel=1e-6)
     assert record_files(table)[0] == table
-    table.write_text("file,level\nrecords/record-0.csv,2.5\nrecords/record-0.csv,5\n")
+    content = (
+        "\ufefffile,level\nrecords/record-0.csv,2.5\nrecords/record-0.csv,5\n"  # as spreadsheets write it
+    )
+    table.write_text(content, encoding="utf-8")
     of = drawn(table, intensity={"measure": "pgv"})
     assert [motion_figures(one)["peak_velocity"] for one in of.strongest()] == pytest.approx([2.5, 5.0])
 

@@ -34,18 +34,13 @@ def describe_motions(source, baseline):
     records = read_records(source)
     motions = [load_motion(record.path, baseline=baseline) for record in records]
     figures = [motion_figures(motion) for motion in motions]
-    middle = sorted(range(len(motions)), key=lambda place: figures[place]["peak_acceleration"])[
-        (len(motions) - 1) // 2
-    ]
+    order = np.argsort([one["peak_acceleration"] for one in figures], kind="stable")
+    middle = order[(len(order) - 1) // 2]
     described = describe_motion(motions[middle], named_file("motions", records[middle].path))
     if not is_record_set(source):
         return described
-    spectra = [response_spectrum(motion, _PERIODS) for motion in motions]
-    described["spectra"] = (
-        ("record", "period"),
-        np.array(spectra),
-        described["pseudo_acceleration"].attrs,
-    )
+    spectra = np.array([response_spectrum(motion, _PERIODS) for motion in motions])
+    described["spectra"] = ("record", "period"), spectra, described["pseudo_acceleration"].attrs
     return described.assign_coords(record=[record.name for record in records]).assign_attrs(
         name=f"{Path(source).stem}, {records[middle].name}",
         records=len(records),

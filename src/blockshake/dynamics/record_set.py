@@ -115,7 +115,8 @@ def read_records(source):
 
 
 def _rows(path):
-    return [[cell.strip() for cell in row] for row in csv.reader(io.StringIO(read_text(path)))] or [[]]
+    text = read_text(path).removeprefix("\ufeff")
+    return [[cell.strip() for cell in row] for row in csv.reader(io.StringIO(text))] or [[]]
 
 
 def _record(table, place, header, row):

@@ -66,13 +66,14 @@ class Cloud(NamedTuple):
         return falls + (1.0 - falls) * exceeds
 
     def level(self, probability):
-        """Intensity with this probability; infinity where the probability stays below it, by a falling trend say."""
+        """Intensity with this probability; 0 or infinity where the probability stays above or below it."""
         low, high = np.broadcast_arrays(self.middle - _FAR, self.middle + _FAR + 0.0 * self.slope)
         for _ in range(_STEPS):
             middle = 0.5 * (low + high)
             below = self.probability(np.exp(middle)) < probability
             low, high = np.where(below, middle, low), np.where(below, high, middle)
-        return np.where(high >= self.middle + _FAR - 1e-6, np.inf, np.exp(high))
+        found = np.where(high >= self.middle + _FAR - 1e-6, np.inf, np.exp(high))
+        return np.where(low <= self.middle - _FAR + 1e-6, 0.0, found)
 
     @property
     def median(self):
@@ -82,7 +83,7 @@ class Cloud(NamedTuple):
     @property
     def dispersion(self):
         """Half the logarithm of the ratio of the intensities at 84 and 16 %: the deviation of a lognormal curve [1]."""
-        with np.errstate(invalid="ignore"):
+        with np.errstate(invalid="ignore", divide="ignore"):
             spread = 0.5 * (np.log(self.level(ndtr(1.0))) - np.log(self.level(ndtr(-1.0))))
         return np.where(np.isnan(spread), np.inf, spread)
 

@@ -36,7 +36,7 @@ def load_design(path):
     InputError
         Missing file, no rows, a name twice, a row of another length, or an entry that is no finite number.
     """
-    rows = [row for row in csv.reader(io.StringIO(read_text(path))) if row]
+    rows = [row for row in csv.reader(io.StringIO(read_text(path).removeprefix("\ufeff"))) if row]
     if len(rows) < 2:
         raise InputError(path, "", "expected a header of parameter names and one row a sample")
     names = [name.strip() for name in rows[0]]
