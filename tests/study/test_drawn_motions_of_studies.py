@@ -52,6 +52,8 @@ def test_a_folder_as_the_motion_has_the_peak_acceleration_as_its_measure(study):
     assert case.intensity.measure == "pga"
     assert case.intensity.levels == ()
     assert case.scale == 1.0
+    printed = check_config(study, "mine.yaml").model_dump(mode="json")
+    assert check_config(printed, "printed.yaml").cases[0] == case
 
 
 def test_models_share_the_motion_of_a_sample(study):
@@ -118,12 +120,14 @@ def test_own_samples_stay_as_they_are(study, tmp_path):
     assert design.values[PAIR].tolist() == pytest.approx(np.linspace(0.5, 0.7, 12))
     assert float(design.correlation.loc[PAIR, DENSITY]) == pytest.approx(-1.0)
     assert design.largest_error == 0.0
+    printed = study | {"ensemble": ensemble.model_dump(mode="json")}
+    assert check_config(printed, "printed.yaml").ensemble == ensemble
 
 
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"size": 12}, "mine.yaml: ensemble.size: expected no such key beside `table`"),
+        ({"size": 11}, "mine.yaml: ensemble.size: expected no such key beside `table`"),
         ({"table": "none.csv"}, "mine.yaml: ensemble.table: none.csv: expected a readable file"),
     ],
 )

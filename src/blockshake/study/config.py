@@ -74,16 +74,20 @@ class Ensemble(Strict):
     def _of_table(cls, given):
         if not isinstance(given, dict) or not isinstance(given.get("table"), str):
             return given
-        for key in ("size", "distributions", "correlation"):
-            if key in given:
-                raise InputError("", f"ensemble.{key}", "expected no such key beside `table`, which tells it")
         with faults_of("", "ensemble.table"):
             values = load_design(given["table"])
             columns = {
                 name: {"distribution": "empirical", "values": sorted(column.tolist())}
                 for name, column in values.items()
             }
-            return given | {"size": len(values), "distributions": load_distributions(columns, given["table"])}
+            told = {"size": len(values), "distributions": load_distributions(columns, given["table"])}
+        for key in ("size", "distributions", "correlation"):
+            said = given.get(key)  # a report prints what the table told
+            if key == "distributions" and said is not None:
+                said = load_distributions(said, "ensemble")
+            if said not in (None, told.get(key)):
+                raise InputError("", f"ensemble.{key}", "expected no such key beside `table`, which tells it")
+        return given | told
 
     @field_validator("distributions", mode="before")
     @classmethod
