@@ -206,7 +206,7 @@ ROWS = {
         (f"{_SAMPLED}", {"friction.granite.ice": {**_COV, "mean": 0.7}}, "expected a parameter that one of"),
         (f"{_SAMPLED}", {"materials.granit.density": {**_COV, "mean": 0.7}}, "expected a parameter that one of"),
         (f"{_SAMPLED}", {FRICTION: {**_COV, "mean": 0.7}, TURNED: {**_COV, "mean": 0.7}}, "every pair once"),
-        (f"{_SAMPLED}.{FRICTION}.distribution", "normal", "'lognormal'"),
+        (f"{_SAMPLED}.{FRICTION}.distribution", "norml", "the name of a continuous distribution"),
         ("extension", {"cases": {"wall": "nothing"}}, "extension.cases"),
         (f"{_SAMPLED}.{FRICTION}.mean", 0.0, _LOWER),
         (f"{_SAMPLED}.materials.granite.density.mean", 1e10, "less than or equal to"),

@@ -2,6 +2,8 @@
 
 from functools import cache
 
+from blockshake.dynamics.record_set import record_files
+
 
 @cache
 def campaign_files(case, every=False):

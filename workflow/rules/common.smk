@@ -21,7 +21,6 @@ os.environ.update(
 from snakemake.logging import logger
 from snakemake.utils import update_config
 
-from blockshake.dynamics.record_set import record_files
 from blockshake.errors import BAD_INPUT, InputError
 from blockshake.files import HOME, PACKAGE, load_yaml, parse_yaml, shipped
 from blockshake.log import Failures

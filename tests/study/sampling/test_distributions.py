@@ -226,6 +226,18 @@ def test_a_name_of_scipy_is_that_distribution(entry, known):
     }
 
 
+@pytest.mark.parametrize(
+    "entry",
+    [{"distribution": "normal"}, {"distribution": "uniform"}, {"distribution": "truncnorm", "a": -1, "b": 3}],
+)
+def test_mean_and_variation_may_tell_place_and_scale(entry):
+    variable = loaded(**entry, mean=0.7, cov=0.1)
+    assert variable.mean == pytest.approx(0.7)
+    assert variable.cov == pytest.approx(0.1)
+    strata = variable.stratum_means(10)
+    assert strata.mean() == pytest.approx(0.7, rel=1e-3)
+
+
 def test_a_lognormal_by_scipy_is_the_one_by_mean_and_variation():
     own = Lognormal(mean=0.75, cov=0.1)
     same = loaded(distribution="lognorm", s=own.log_deviation, scale=own.median)
@@ -254,6 +266,9 @@ def test_an_empirical_variable_gives_the_values_of_its_column_once_each(tmp_path
 @pytest.mark.parametrize(
     ("entry", "line"),
     [
+        ({"distribution": "truncnorm", "a": -2, "mean": 0.7, "cov": 0.1}, r"b\.b: expected the keys a, b"),
+        ({"distribution": "norml", "mean": 0.7, "cov": 0.1}, r"b\.distribution: expected lognormal"),
+        ({"distribution": "normal", "mean": 0.7, "cov": 0}, r"b\.scale: "),
         ({"distribution": "norml"}, r"b\.distribution: expected lognormal, .* scipy\.stats such as norm"),
         ({"distribution": "poisson", "mu": 3}, "the name of a continuous distribution"),
         (

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 import scipy
-from pydantic import ConfigDict, Field, field_validator, model_validator
+from pydantic import ConfigDict, Field, ValidationError, field_validator, model_validator
 from scipy.special import ndtr, ndtri
 
 from blockshake.errors import InputError, faults_of
@@ -180,13 +180,30 @@ class Discrete(_ByQuantiles):
 
 
 class OfScipy(_ByQuantiles):
-    """A continuous variable by its name in `scipy.stats`, whose other keys are its shape parameters there."""
+    """A continuous variable by its name in `scipy.stats`, whose other keys are its shape parameters there.
+
+    ``mean`` and ``cov`` may stand in place of ``loc`` and ``scale``, which they then tell.
+    """
 
     model_config = ConfigDict(extra="allow", frozen=True)
     __pydantic_extra__: dict[str, Finite] = Field(init=False)
     distribution: str = Field(description="name in scipy.stats; `normal` is its norm")
     loc: Finite = Field(0.0, description="as in scipy.stats, SI")
     scale: Positive = Field(1.0, description="as in scipy.stats, SI")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_moments(cls, given):
+        moments = [given.get(name) for name in ("mean", "cov")]
+        if {"loc", "scale"} & set(given) or not all(isinstance(one, (int, float)) for one in moments):
+            return given
+        rest = {name: value for name, value in given.items() if name not in ("mean", "cov")}
+        try:
+            standard = cls.model_validate(rest)._frozen
+        except ValidationError:  # told once the whole is validated
+            return rest
+        scale = moments[1] * abs(moments[0]) / float(standard.std())
+        return rest | {"loc": moments[0] - scale * float(standard.mean()), "scale": scale}
 
     @model_validator(mode="after")
     def _is_known(self):
