@@ -19,7 +19,9 @@ rule climb_samples:
     resources:
         runtime=240,
     params:
-        runs=lambda wildcards: runs_of(FRAGILITY["model"], case_keys(wildcards.case, "intensity")),
+        runs=lambda wildcards: runs_of(
+            FRAGILITY["model"], case_keys(wildcards.case, "intensity")
+        ),
         seed=lookup(dpath="ensemble/seed", within=config),
         ladder=lookup(dpath="ladder", within=config),
         store="results/store",
