@@ -25,7 +25,7 @@ from blockshake.files import HOME, load_json, shipped, write_dataset, write_json
 from blockshake.geometry.structure import load_structure
 from blockshake.store import load_made
 from blockshake.study.ensembles.ensemble import DECIMALS
-from blockshake.study.sampling.latin_hypercube import load_design
+from blockshake.study.sampling.sample_table import load_design
 
 _CHILDREN = Path(__file__).with_name("scale_children.py")
 _MOST_MEMORY, _MOST_OVERHEAD, _MOST_HTML = 2048.0, 0.1, 20.0  # MiB, CPU s a sample, MB: targets

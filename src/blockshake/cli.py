@@ -330,7 +330,8 @@ def _export(options):
 
 def _sample(options):
     check_output(options.output)
-    from blockshake.study.sampling.latin_hypercube import draw_samples, write_design
+    from blockshake.study.sampling.latin_hypercube import draw_samples
+    from blockshake.study.sampling.sample_table import write_design
 
     design = draw_samples(options.size, options.seed, correlation=options.correlation)
     write_design(options.output, design.values)

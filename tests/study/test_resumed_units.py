@@ -9,7 +9,7 @@ from blockshake.store import Store
 from blockshake.study.config import Ladder
 from blockshake.study.ensembles.batch import CaseRuns
 from blockshake.study.fragility import climb
-from blockshake.study.sampling.latin_hypercube import write_design
+from blockshake.study.sampling.sample_table import write_design
 from blockshake.study.stiffness import wave_speed
 
 CASE = {

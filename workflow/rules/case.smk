@@ -2,6 +2,7 @@
 
 from functools import cache
 
+from blockshake.dynamics.record_set import record_files
 from blockshake.files import content_digest
 
 
@@ -76,8 +77,15 @@ def structure_file(wildcards):
 
 def case_files(wildcards):
     """Structure and motion of a case, by name."""
-    motion = definition("motions", CASES[wildcards.case]["motion"])
-    return {"structure": structure_file(wildcards), "motion": motion}
+    return {
+        "structure": structure_file(wildcards),
+        "motion": files_of_motion(CASES[wildcards.case]["motion"]),
+    }
+
+
+def files_of_motion(motion):
+    """File of a motion, or all those of a set of records."""
+    return [by_content(beside(path)) for path in record_files(motion)]
 
 
 def case_keys(case, *more):
@@ -88,7 +96,7 @@ def case_keys(case, *more):
 
 def case_definition(wildcards):
     """The same of a case under one motion of its own."""
-    return case_keys(wildcards.case, "scale", "input")
+    return case_keys(wildcards.case, "scale", "input", "intensity")
 
 
 def run_files(wildcards):

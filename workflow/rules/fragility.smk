@@ -19,7 +19,10 @@ rule climb_samples:
     resources:
         runtime=240,
     params:
-        runs=lambda wildcards: runs_of(FRAGILITY["model"], case_keys(wildcards.case)),
+        runs=lambda wildcards: runs_of(
+            FRAGILITY["model"], case_keys(wildcards.case, "intensity")
+        ),
+        seed=lookup(dpath="ensemble/seed", within=config),
         ladder=lookup(dpath="ladder", within=config),
         store="results/store",
         said=said(case_files),
@@ -47,3 +50,23 @@ rule fit_fragility:
         source=source_of("fit_fragility"),
     script:
         "../scripts/fit_fragility.py"
+
+
+rule fit_cloud:
+    """Fragilities of samples that draw their motions, over the intensity of these."""
+    input:
+        unpack(case_files),
+        samples="results/{study}/samples/{model}/{case}.nc",
+    output:
+        "results/{study}/clouds/{model}/{case}.nc",
+    log:
+        "logs/{study}/fit_cloud/{model}/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        case=case_definition,
+        seed=lookup(dpath="ensemble/seed", within=config),
+        largest_drift=lookup(dpath="ladder/largest_drift", within=config),
+        source=source_of("fit_cloud"),
+    script:
+        "../scripts/fit_cloud.py"

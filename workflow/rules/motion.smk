@@ -1,6 +1,6 @@
 def motion_file(wildcards):
-    """Definition of a motion, by the name of its results."""
-    return definition("motions", MOTIONS[wildcards.motion])
+    """Files of a motion or a set of records, by the name of its results."""
+    return files_of_motion(MOTIONS[wildcards.motion])
 
 
 rule describe_motion:
@@ -14,6 +14,7 @@ rule describe_motion:
     conda:
         "../envs/blockshake.yaml"
     params:
+        motion=lambda wildcards: MOTIONS[wildcards.motion],
         baseline=lambda wildcards: BASELINES[MOTIONS[wildcards.motion]],
         said=said(motion_file),
         source=source_of("describe_motion"),

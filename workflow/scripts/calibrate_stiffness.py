@@ -1,7 +1,7 @@
 from blockshake.files import write_dataset
 from blockshake.log import logging_to
 from blockshake.store import Store
-from blockshake.study.sampling.latin_hypercube import load_design, write_design
+from blockshake.study.sampling.sample_table import load_design, write_design
 from blockshake.study.stiffness.wave_speed import calibrate_design, wave_tests
 
 with logging_to(snakemake.log[0]) as say:

@@ -1,6 +1,7 @@
 from blockshake.files import write_json
 from blockshake.log import logging_to
-from blockshake.study.sampling.latin_hypercube import draw_design, write_design
+from blockshake.study.sampling.latin_hypercube import draw_design
+from blockshake.study.sampling.sample_table import write_design
 
 with logging_to(snakemake.log[0]):
     design = draw_design(snakemake.params.ensemble)

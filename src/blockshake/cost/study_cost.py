@@ -5,7 +5,7 @@ import sys
 from blockshake.cost.diagnosis_cost import diagnosis_cost
 from blockshake.cost.jobs import CostPart, planned_jobs
 from blockshake.cost.trial import run_seconds
-from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.record_set import DrawnMotions
 from blockshake.files import HOME
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
@@ -43,7 +43,7 @@ def study_cost(path):
         for case in config.cases:
             structure, motion = (
                 load_structure(case.structure),
-                load_motion(case.motion, case.scale, case.baseline),
+                next(DrawnMotions.of(case.model_dump()).strongest()),
             )
             trial = {"model": solver_of(model).name, **settings.model_dump()}
             asked = _runs(config, model, case)

@@ -6,11 +6,47 @@ import numpy as np
 import xarray as xr
 
 from blockshake.dynamics.intensity import DAMPING, motion_figures, response_spectrum
-from blockshake.dynamics.load_motion import plain_attributes
+from blockshake.dynamics.load_motion import load_motion, plain_attributes
+from blockshake.dynamics.record_set import is_record_set, read_records
 from blockshake.dynamics.synthetic_motion import load_synthetic, target_acceleration
+from blockshake.files import named_file
 
 _RATE = 200.0  # Hz, of the histories
 _PERIODS = np.geomspace(0.04, 4.0, 120)  # s
+
+
+def describe_motions(source, baseline):
+    """`describe_motion` of a motion, or of the record of median peak acceleration of a set, as published.
+
+    Parameters
+    ----------
+    source : str or path
+        As `read_records` takes it.
+    baseline : str or float
+        As for `load_motion`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of a set also ``spectra(record, period)`` [m/s2]; attributes ``records``, their number, and ``significant_end``,
+        the latest [s]; ``synthetic`` where any is.
+    """
+    records = read_records(source)
+    motions = [load_motion(record.path, baseline=baseline) for record in records]
+    figures = [motion_figures(motion) for motion in motions]
+    order = np.argsort([one["peak_acceleration"] for one in figures], kind="stable")
+    middle = order[(len(order) - 1) // 2]
+    described = describe_motion(motions[middle], named_file("motions", records[middle].path))
+    if not is_record_set(source):
+        return described
+    spectra = np.array([response_spectrum(motion, _PERIODS) for motion in motions])
+    described["spectra"] = ("record", "period"), spectra, described["pseudo_acceleration"].attrs
+    return described.assign_coords(record=[record.name for record in records]).assign_attrs(
+        name=f"{Path(source).stem}, {records[middle].name}",
+        records=len(records),
+        significant_end=max(one["significant_end"] for one in figures),
+        synthetic=int(any(motion.attributes.get("synthetic") for motion in motions)),
+    )
 
 
 def describe_motion(motion, definition):

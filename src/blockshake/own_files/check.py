@@ -8,8 +8,9 @@ from blockshake.diagnosis.nominal.plan import plan_diagnosis
 from blockshake.diagnosis.nominal.planned_test import planned_motion
 from blockshake.dynamics.baseline import AUTO
 from blockshake.dynamics.intensity import strong_until
-from blockshake.dynamics.load_motion import load_motion, provenance, scaled
+from blockshake.dynamics.load_motion import load_motion, provenance
 from blockshake.dynamics.motion import GroundMotion
+from blockshake.dynamics.record_set import DrawnMotions, is_record_set, read_records
 from blockshake.dynamics.synthetic_motion import SyntheticMotion
 from blockshake.errors import InputError, faults_of
 from blockshake.files import AnyPath, load_yaml, shipped_names
@@ -55,6 +56,8 @@ def check(source: AnyPath | Structure | GroundMotion, baseline: str | float = AU
         return _motion_line(source, baseline)
     if (Path(source) / "campaign.yaml").is_file():
         return _campaign_line(Path(source))
+    if is_record_set(source):
+        return "\n".join(_motion_line(record.path, baseline) for record in read_records(source))
     if Path(source).suffix not in (".yaml", ".yml"):
         return _motion_line(source, baseline)
     keys = load_yaml(source).keys()
@@ -110,8 +113,11 @@ def _study_line(source):
         counts = sorted({config.samples(model, case.name) for case in config.cases})
         models.append(f"{model} ({' to '.join(map(str, dict.fromkeys((counts[0], counts[-1]))))} samples)")
     count = f"{len(config.cases)} case{'s' * (len(config.cases) != 1)}"
-    motions = {name: load_motion(name, baseline=baseline) for _, name, baseline in config.named_motions()}
-    records = [f"  {name}: {provenance(motion.attributes)}" for name, motion in motions.items()]
+    loaded = {}
+    motions = {
+        case.name: list(DrawnMotions.of(case.model_dump(), loaded).strongest()) for case in config.cases
+    }
+    records = [f"  {name}: {provenance(motion.attributes)}" for (name, _), motion in loaded.items()]
     lines = [f"a study of {count} by {', '.join(models)}", *records]
     return _with_remarks(lines, _study_remarks(config, motions))
 
@@ -154,11 +160,24 @@ def _study_remarks(config, motions):
             yield f"{name} has a cov of {variable.cov:g}: expected a share, 0.1 for 10 %"
     if config.output_rate < _SLOWEST:
         yield f"{config.output_rate:g} rows a second miss the peaks of drifts and forces: 200 is usual"
-    for name, scale in dict.fromkeys((case.motion, case.scale) for case in config.cases):
-        remarks = motion_remarks(scaled(motions[name], scale, name))
-        yield from (f"{name} at {scale:g}: {remark}" for remark in remarks)
+    shaken = [motion for case in config.cases for motion in motions[case.name]]
+    for (name, scale), motion in {
+        (one.name, one.attributes.get("scale", 1.0)): one for one in shaken
+    }.items():
+        yield from (f"{name} at {scale:.4g}: {remark}" for remark in motion_remarks(motion))
     for case in config.cases:
-        length, end = motions[case.motion].duration, strong_until(motions[case.motion])
+        count = (
+            len(motions[case.name]) * max(1, len(case.intensity.levels))
+            if case.intensity
+            else config.ensemble.size
+        )
+        if count < config.ensemble.size:
+            yield (
+                f"{case.name}: {config.ensemble.size} samples draw {count} motions, each several times: limits that "
+                "take samples as independent are too narrow"
+            )
+        length = max(motion.duration for motion in motions[case.name])
+        end = max(map(strong_until, motions[case.name]))
         if case.duration > length + _LATE:
             yield f"{case.name}: {case.duration:g} s are simulated of a motion of {length:g} s"
         if case.duration < end:

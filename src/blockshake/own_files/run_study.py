@@ -104,8 +104,11 @@ def _seen_from(folder, study):
         case.setdefault("name", Path(case["structure"]).stem)
         if case.get("measured"):
             case["measured"]["campaign"] = moved(case["measured"]["campaign"])
-    if study["ensemble"].get("correlation"):
-        study["ensemble"]["correlation"] = moved(study["ensemble"]["correlation"])
+    named = [(study["ensemble"], key) for key in ("correlation", "table")]
+    named += [(one, "file") for one in (study["ensemble"].get("distributions") or {}).values()]
+    for mapping, key in named:
+        if mapping.get(key):
+            mapping[key] = moved(mapping[key])
     if (study.get("diagnosis") or {}).get("campaigns"):
         study["diagnosis"]["campaigns"] = list(map(moved, study["diagnosis"]["campaigns"]))
     return study

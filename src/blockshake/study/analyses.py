@@ -12,7 +12,7 @@ from blockshake.study.config_checks import (
     check_extension,
     check_fragility,
 )
-from blockshake.study.sampling.latin_hypercube import load_design
+from blockshake.study.sampling.sample_table import load_design
 
 OF_THE_PAPER = tuple(f"configuration-{number}" for number in (1, 2, 3, 4))
 
@@ -28,6 +28,11 @@ def _every_case(study):
 
 def _measured_cases(study):
     return [case["name"] for case in study["cases"] if case["measured"]]
+
+
+def _drawing_cases(study):
+    """Cases whose samples draw motions, or are scaled to levels of one."""
+    return [case["name"] for case in study["cases"] if case.get("intensity") is not None]
 
 
 def _cases_of_stiffness(study):
@@ -99,6 +104,7 @@ ANALYSES = (
     Analysis(
         "fragility", "fragility/{case}.nc", load_made, _cases_of("fragility"), "fragility", check_fragility
     ),
+    Analysis("clouds", "clouds/{model}/{case}.nc", cases=_drawing_cases),
     Analysis("changes", "changes/{case}.nc", load_made, _cases_of("extension"), "extension", check_extension),
     Analysis("calibration", "calibration.json", load_json, None, "calibration", check_calibration),
 )

@@ -6,7 +6,8 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, ConfigDict, Field, StringConstraints, field_validator, model_validator
 
 from blockshake.dynamics.baseline import AUTO, Baseline
-from blockshake.errors import InputError
+from blockshake.dynamics.record_set import Intensity, is_record_set
+from blockshake.errors import InputError, faults_of
 from blockshake.files import load_yaml
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.models import solver_of
@@ -24,6 +25,7 @@ from blockshake.study.sampling.distributions import (
     load_distributions,
 )
 from blockshake.study.sampling.latin_hypercube import LARGEST_SIZE, SMALLEST_SIZE
+from blockshake.study.sampling.sample_table import load_design
 from blockshake.validation import Count, Positive, Strict, Whole, validated
 
 
@@ -40,8 +42,15 @@ def _as_text(given):
 
 
 class Ensemble(Strict):
-    """The samples: how many, of which variables, how correlated."""
+    """The samples: how many, of which variables, how correlated; or a table of own ones."""
 
+    model_config = ConfigDict(json_schema_extra=lambda schema: schema["required"].remove("size"))
+
+    table: str | None = Field(
+        None,
+        description="CSV of own samples, a row each, columns the dotted names of the variables: in place of `size`, "
+        "`distributions` and `correlation`",
+    )
     size: Whole = Field(
         ge=SMALLEST_SIZE,
         le=LARGEST_SIZE,
@@ -60,9 +69,31 @@ class Ensemble(Strict):
         description="parameters that take another's sampled value, by dotted names; Table 2's by default",
     )
 
+    @model_validator(mode="before")
+    @classmethod
+    def _of_table(cls, given):
+        if not isinstance(given, dict) or not isinstance(given.get("table"), str):
+            return given
+        with faults_of("", "ensemble.table"):
+            values = load_design(given["table"])
+            columns = {
+                name: {"distribution": "empirical", "values": sorted(column.tolist())}
+                for name, column in values.items()
+            }
+            told = {"size": len(values), "distributions": load_distributions(columns, given["table"])}
+        for key in ("size", "distributions", "correlation"):
+            said = given.get(key)  # a report prints what the table told
+            if key == "distributions" and said is not None:
+                said = load_distributions(said, "ensemble")
+            if said not in (None, told.get(key)):
+                raise InputError("", f"ensemble.{key}", "expected no such key beside `table`, which tells it")
+        return given | told
+
     @field_validator("distributions", mode="before")
     @classmethod
     def _known_variables(cls, mapping):
+        if isinstance(mapping, dict) and all(hasattr(one, "stratum_medians") for one in mapping.values()):
+            return mapping
         return load_distributions(mapping, "ensemble")
 
 
@@ -97,8 +128,15 @@ class StudyCase(Strict):
         "of one structure, under two motions say, need names"
     )
     structure: str = Field(description="shipped name or file")
-    motion: str = Field(description="shipped name or file")
-    scale: Positive = Field(description="multiplies the motion [1]")
+    motion: str = Field(
+        description="shipped name or file; or a folder of records, or a CSV table of them: each sample draws one"
+    )
+    scale: Positive = Field(1.0, description="multiplies the motion [1]")
+    intensity: Intensity | None = Field(
+        None,
+        description="how strong the motions are told to be and, with `levels`, scaled to be, before `scale`; by "
+        "default the peak ground acceleration where the samples draw records: docs/guide/records.md",
+    )
     baseline: Baseline = AUTO
     duration: Positive = Field(description="simulated time [s]")
     samples: dict[str, Count] = Field(
@@ -117,15 +155,21 @@ class StudyCase(Strict):
     def _with_defaults(cls, given):
         if not isinstance(given, dict):
             return given
+        motion = given.get("motion")
         return {
             "name": Path(str(given.get("structure", ""))).stem,
             "input": MEASURED if given.get("measured") else COMMANDED,
+            "intensity": {} if isinstance(motion, str) and is_record_set(motion) else None,
         } | given
 
     @model_validator(mode="after")
     def _has_input(self):
         if self.input == MEASURED and self.measured is None:
             raise ValueError(f"expected input: {COMMANDED}, as there is no measured test")
+        if self.intensity is not None and self.measured is not None:
+            raise ValueError(
+                "expected no `measured` beside records or `intensity`: no test had these motions"
+            )
         return self
 
 
@@ -246,7 +290,7 @@ class StudyConfig(Strict):
         return next((one for one in self.cases if one.name == pairs.get(case.name)), case)
 
     def named_motions(self):
-        """Key, name and baseline of every case's motion."""
+        """Key, name and baseline of every case's motion or set of records."""
         return [(f"cases.{index}", case.motion, case.baseline) for index, case in enumerate(self.cases)]
 
     def samples(self, model, case):

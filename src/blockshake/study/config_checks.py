@@ -8,7 +8,8 @@ import numpy as np
 import pandas as pd
 
 from blockshake.dynamics.baseline import check_window
-from blockshake.dynamics.load_motion import load_motion, scaled
+from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.record_set import DrawnMotions, is_record_set
 from blockshake.errors import InputError, faults_of
 from blockshake.files import HOME
 from blockshake.geometry.structure import load_structure
@@ -21,7 +22,7 @@ from blockshake.simulation.simulate import check_run
 from blockshake.study.calibration.comparison import has_use, parameter_of
 from blockshake.study.calibration.settings import OTHERS, STIFFNESS
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED, check_record
-from blockshake.study.sampling.distributions import LINKED, TABLE_2, known_as, parameter_unit
+from blockshake.study.sampling.distributions import LINKED, TABLE_2, Discrete, known_as, parameter_unit
 from blockshake.study.sampling.latin_hypercube import complete_correlation
 from blockshake.study.sampling.sample_parameters import has_parameter, sample_parameters
 from blockshake.study.stiffness.tower import tower_of
@@ -55,7 +56,7 @@ def check_named(config, where):
     for model, settings in config.models.items():
         for name in part_parameters(settings.parameters)[0]:
             raise InputError(where, f"models.{model}.parameters.{name}", "expected a parameter of the solver")
-    motions, structures = _read_motions(config, where), {}
+    loaded, structures, shaken = _read_motions(config, where), {}, []
     for index, case in enumerate(config.cases):
         key = f"cases.{index}"
         for model, count in case.samples.items():
@@ -65,10 +66,15 @@ def check_named(config, where):
                     where, f"{key}.samples.{model}", f"expected 1 to {config.ensemble.size}, not {count}"
                 )
         with faults_of(where, f"{key}.motion"):
-            motion = scaled(motions[case.motion], case.scale, case.motion)
+            drawn = DrawnMotions.of(case.model_dump(), loaded)
+            for record in drawn.records:
+                check_plain(record.path, case.motion, record.name)
+            motions = list(drawn.strongest())
+        shaken.append(motions[0])
         climbs = config.fragility is not None and case.name in config.fragility.cases
         if case.input == COMMANDED or climbs:
-            check_window(motion, case.duration, where, f"{key}.duration")
+            for motion in motions:
+                check_window(motion, case.duration, where, f"{key}.duration")
         if case.structure not in structures:
             structures[case.structure] = check_structure(case.structure, where, key)
         if case.measured is not None:
@@ -76,8 +82,7 @@ def check_named(config, where):
             check_measured(case, tested, where, f"{key}.measured")
     check_samples(config.ensemble, structures, where)
     for index, case in enumerate(config.cases):
-        motion = scaled(motions[case.motion], case.scale, case.motion)
-        check_simulations(config, index, structures[case.structure], motion, where)
+        check_simulations(config, index, structures[case.structure], shaken[index], where)
     for folder in config.diagnosis.campaigns:
         with faults_of(where, "diagnosis.campaigns"):
             load_campaign(folder)
@@ -87,15 +92,15 @@ def check_named(config, where):
 
 
 def _read_motions(config, where):
-    """Motions by name, each with the one baseline that the study gives it."""
+    """Motions by path and by the one baseline that the study gives it; records of sets are read with their case."""
     baselines, read = {}, {}
     for key, motion, baseline in config.named_motions():
         if baselines.setdefault(motion, baseline) != baseline:
             expected = f"expected one baseline of {motion}; a copy of the file may have another"
             raise InputError(where, f"{key}.baseline", expected)
-        if motion not in read:
+        if not is_record_set(motion) and (motion, baseline) not in read:
             with faults_of(where, f"{key}.motion"):
-                read[motion] = load_motion(motion, baseline=baseline)
+                read[motion, baseline] = load_motion(motion, baseline=baseline)
     return read
 
 
@@ -123,8 +128,9 @@ def check_names(config, where):
     ]
     names = [case.name for case in config.cases]
     paths = [("diagnosis.campaigns", folder) for folder in config.diagnosis.campaigns]
-    if config.ensemble.correlation is not None:
-        paths.append(("ensemble.correlation", config.ensemble.correlation))
+    for key in ("correlation", "table"):
+        if getattr(config.ensemble, key) is not None:
+            paths.append((f"ensemble.{key}", getattr(config.ensemble, key)))
     naming = []
     for index, case in enumerate(config.cases):
         naming += [(f"cases.{index}.structure", case.structure), (f"cases.{index}.motion", case.motion)]
@@ -212,8 +218,11 @@ def check_samples(ensemble, structures, where):
     ends = {}
     for name, distribution in variables.items():
         values = distribution.stratum_medians(ensemble.size)
-        if not (np.isfinite(values).all() and (np.diff(values) > 0.0).all()):
-            key = f"ensemble.distributions.{name}"
+        key = f"ensemble.distributions.{name}"
+        if isinstance(distribution, Discrete):
+            if values[0] == values[-1]:
+                raise InputError(where, key, f"expected {ensemble.size} samples that are not all alike")
+        elif not (np.isfinite(values).all() and (np.diff(values) > 0.0).all()):
             raise InputError(where, key, f"expected {ensemble.size} different samples: another cov")
         ends[name] = values[0], values[-1]
     for structure in structures.values():
@@ -283,6 +292,10 @@ def check_fragility(asked, config, structures, where):
     """Cases and a model of the study, and no more samples than there are."""
     for name in asked.cases:
         _one_of(name, [case.name for case in config.cases], where, "fragility.cases")
+        if (strong := config.case(name).intensity) is not None and len(strong.levels) > 1:
+            raise InputError(
+                where, "fragility.cases", f"expected {name} to have one level, which samples climb from"
+            )
     _each_once(asked.cases, where, "fragility.cases")
     _one_of(asked.model, config.models, where, "fragility.model")
     if asked.size > config.ensemble.size:

@@ -2,11 +2,12 @@ import itertools
 
 import numpy as np
 import pytest
-from scipy import integrate
+from scipy import integrate, stats
 
 from blockshake.errors import InputError
 from blockshake.study.sampling.distributions import (
     TABLE_2,
+    Discrete,
     Lognormal,
     Tabulated,
     draw_true_parameters,
@@ -88,7 +89,7 @@ def test_config_replaces_table_2_as_a_whole():
         ({"friction.a.b": {"mean": 1, "cov": 0.1, "sd": 2}}, "friction.a.b.sd"),
         ({"friction.a.b": {"mean": 1}}, "friction.a.b.cov"),
         ({"friction.a.b": {"mean": -1, "cov": 0.1}}, "friction.a.b.mean"),
-        ({"friction.a.b": {"mean": 1, "cov": 0.1, "distribution": "normal"}}, "friction.a.b.distribution"),
+        ({"friction.a.b": {"mean": 1, "cov": 0.1, "distribution": "norml"}}, "friction.a.b.distribution"),
         ({"friction.a.b": {"mean": 1, "cov": 0.1}, "friction.b.a": {"mean": 1, "cov": 0.1}}, "friction.b.a"),
         ({}, ""),
         ({"friction.a.b": 3}, "friction.a.b"),
@@ -191,3 +192,102 @@ def test_a_wrong_tabulated_variable_is_named(name, entry, line):
 )
 def test_units_of_what_a_cause_states(name, unit):
     assert parameter_unit(f"extension.{name}") == unit
+
+
+def loaded(**entry):
+    return load_distributions({"friction.a.b": entry}, "study.yaml")["friction.a.b"]
+
+
+@pytest.mark.parametrize(
+    ("entry", "known"),
+    [
+        ({"distribution": "normal", "loc": 0.7, "scale": 0.07}, stats.norm(0.7, 0.07)),
+        ({"distribution": "uniform", "loc": 0.4, "scale": 0.2}, stats.uniform(0.4, 0.2)),
+        (
+            {"distribution": "truncnorm", "a": -2, "b": 1.5, "loc": 0.7, "scale": 0.1},
+            stats.truncnorm(-2, 1.5, 0.7, 0.1),
+        ),
+        ({"distribution": "lognorm", "s": 0.3, "scale": 0.7}, stats.lognorm(0.3, 0.0, 0.7)),
+        ({"distribution": "beta", "a": 2.0, "b": 5.0}, stats.beta(2.0, 5.0)),
+    ],
+)
+def test_a_name_of_scipy_is_that_distribution(entry, known):
+    variable = loaded(**entry)
+    chances = np.array([0.01, 0.3, 0.5, 0.99])
+    np.testing.assert_array_equal(variable.quantile(chances), known.ppf(chances))
+    np.testing.assert_array_equal(variable.density(known.ppf(chances)), known.pdf(known.ppf(chances)))
+    assert variable.mean == pytest.approx(known.mean())
+    assert variable.cov == pytest.approx(known.std() / known.mean())
+    # medians of strata are exact quantiles, and means of strata average to the mean
+    np.testing.assert_array_equal(variable.stratum_medians(10), known.ppf((np.arange(10) + 0.5) / 10))
+    assert variable.stratum_means(10).mean() == pytest.approx(known.mean(), rel=1e-3)
+    assert load_distributions({"friction.a.b": variable.model_dump(mode="json")}, "again") == {
+        "friction.a.b": variable
+    }
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [{"distribution": "normal"}, {"distribution": "uniform"}, {"distribution": "truncnorm", "a": -1, "b": 3}],
+)
+def test_mean_and_variation_may_tell_place_and_scale(entry):
+    variable = loaded(**entry, mean=0.7, cov=0.1)
+    assert variable.mean == pytest.approx(0.7)
+    assert variable.cov == pytest.approx(0.1)
+    strata = variable.stratum_means(10)
+    assert strata.mean() == pytest.approx(0.7, rel=1e-3)
+
+
+def test_a_lognormal_by_scipy_is_the_one_by_mean_and_variation():
+    own = Lognormal(mean=0.75, cov=0.1)
+    same = loaded(distribution="lognorm", s=own.log_deviation, scale=own.median)
+    np.testing.assert_allclose(same.stratum_medians(50), own.stratum_medians(50), rtol=1e-12)
+
+
+def test_a_discrete_variable_takes_each_value_as_often_as_it_is_probable():
+    variable = loaded(distribution="discrete", values=[0.4, 0.6, 0.9], probabilities=[0.2, 0.5, 0.3])
+    values, counts = np.unique(variable.stratum_medians(50), return_counts=True)
+    np.testing.assert_array_equal(values, [0.4, 0.6, 0.9])
+    np.testing.assert_array_equal(counts, [10, 25, 15])
+    assert variable.mean == pytest.approx(0.65)
+    assert variable.cov == pytest.approx(np.sqrt(0.2 * 0.0625 + 0.5 * 0.0025 + 0.3 * 0.0625) / 0.65)
+
+
+def test_an_empirical_variable_gives_the_values_of_its_column_once_each(tmp_path):
+    table = tmp_path / "tests.csv"
+    values = [0.61, 0.55, 0.72, 0.55, 0.66, 0.58, 0.63, 0.7, 0.59, 0.64]
+    table.write_text("specimen,mu\n" + "".join(f"{place},{one}\n" for place, one in enumerate(values)))
+    variable = loaded(distribution="empirical", file=str(table), column="mu")
+    np.testing.assert_array_equal(variable.stratum_medians(10), sorted(values))
+    assert variable.median == 0.61  # the smallest value with half of the probability up to it
+    assert isinstance(variable, Discrete)
+
+
+@pytest.mark.parametrize(
+    ("entry", "line"),
+    [
+        ({"distribution": "truncnorm", "a": -2, "mean": 0.7, "cov": 0.1}, r"b\.b: expected the keys a, b"),
+        ({"distribution": "norml", "mean": 0.7, "cov": 0.1}, r"b\.distribution: expected lognormal"),
+        ({"distribution": "normal", "mean": 0.7, "cov": 0}, r"b\.scale: "),
+        ({"distribution": "norml"}, r"b\.distribution: expected lognormal, .* scipy\.stats such as norm"),
+        ({"distribution": "poisson", "mu": 3}, "the name of a continuous distribution"),
+        (
+            {"distribution": "truncnorm", "a": -2},
+            r"b\.b: expected the keys a, b, loc, scale, as scipy\.stats\.truncnorm",
+        ),
+        (
+            {"distribution": "normal", "mean": 0.7},
+            r"b\.mean: expected the keys loc, scale, as scipy\.stats\.norm",
+        ),
+        ({"distribution": "normal", "loc": 0.7, "scale": 0}, r"b\.scale: "),
+        ({"distribution": "beta", "a": "x", "b": 2}, r"b\.a: input should be a valid number"),
+        ({"distribution": "cauchy"}, "has a mean and a variance"),
+        ({"distribution": "discrete", "values": [1, 2], "probabilities": [0.5, 0.6]}, "and a sum of 1"),
+        ({"distribution": "discrete", "values": [2, 1]}, "values that rise"),
+        ({"distribution": "empirical", "file": "none.csv"}, r"b\.file: none\.csv"),
+    ],
+)
+def test_a_wrong_distribution_is_refused_with_its_key(entry, line):
+    with pytest.raises(InputError, match=line) as error:
+        loaded(**entry)
+    assert str(error.value).startswith("study.yaml: distributions.friction.a.b")

@@ -7,7 +7,8 @@ from scipy.stats import norm, rankdata
 
 from blockshake.errors import InputError
 from blockshake.study.sampling.distributions import TABLE_2, Lognormal
-from blockshake.study.sampling.latin_hypercube import draw_samples, load_design, write_design
+from blockshake.study.sampling.latin_hypercube import draw_samples
+from blockshake.study.sampling.sample_table import load_design, write_design
 
 LEVEL = 8e-4  # rms correlation error to reach for 50 x 9
 CPU_LIMIT = 5.0  # s of processor time, compilation not counted

@@ -3,7 +3,7 @@ import pandas as pd
 
 from blockshake.pages.blocks import Text
 from blockshake.study.report.content import load_content
-from blockshake.study.sampling.latin_hypercube import load_design
+from blockshake.study.sampling.sample_table import load_design
 from blockshake.study.stiffness.section import stiffness
 
 

@@ -20,6 +20,7 @@ from blockshake.statistics.scores import (
 )
 from blockshake.store import load_made
 from blockshake.study.comparison.twins import TWINS
+from blockshake.study.comparison.two_levels import two_levels
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.ensemble import ALONG_X, POSES, describe, join_batches, relative_to_slab
 from blockshake.study.ensembles.envelope import counted_samples
@@ -44,6 +45,11 @@ _DESCRIBED = {
     "common": ("samples that both models ran", "1"),
     "floor": ("mean difference of a sample from its twin", "m"),
     "horizon": ("first time that a sample differs from its twin", "s"),
+    "mean_peak": ("mean of the largest displacement of any marker along x relative to the slab", "m"),
+    "two_level_peak": ("the same mean with rigid NSCD as a control variate", "m"),
+    "coefficient": ("of the control variate", "1"),
+    "peak_correlation": ("of that displacement by the model and by rigid NSCD", "1"),
+    "variance_gain": ("variance of the mean over that with the control variate", "1"),
     "score": ("continuous ranked probability score against the measured curves", "m"),
 }
 
@@ -94,9 +100,10 @@ def compare_models(ensembles, twins, measured):
         ``width_change(model, marker)``, NaN for all others. Of two
         models, ``other`` the second: ``distance``, the energy distance of the ensembles, with ``distance_chance``;
         ``history_difference`` and ``parting_time`` of the ``common`` samples. Of the numerics, NaN without twins:
-        ``floor`` and ``horizon(model, twin)``. Against the measured curves, NaN without any: ``score(model)``. Limits
-        of 95 %, ``NAME_interval(bound, ...)``: of medians by order statistics, of width and score by bootstrap. NaN
-        where an ensemble has fewer than three samples; times infinite where nothing parts.
+        ``floor`` and ``horizon(model, twin)``. Against the measured curves, NaN without any: ``score(model)``. Of
+        models with fewer samples than rigid NSCD those of `two_levels`. Limits of 95 %, ``NAME_interval(bound, ...)``:
+        of medians by order statistics, of width and score by bootstrap. NaN where an ensemble has fewer than three
+        samples; times infinite where nothing parts.
     """
     models = list(ensembles)
     counted = {model: counted_samples(one) for model, one in ensembles.items()}
@@ -107,6 +114,7 @@ def compare_models(ensembles, twins, measured):
     result = xr.merge(
         [
             _alone(counted, seed),
+            two_levels(ensembles),
             _changes(counted, seed),
             _pairs(counted, TOLD_APART_BY * noise, seed),
             _numerics(counted, twins, TOLD_APART_BY * noise),

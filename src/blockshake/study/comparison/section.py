@@ -14,6 +14,7 @@ from blockshake.study.comparison.tables import (
     other_settings_table,
     pairs_table,
     scores_table,
+    two_levels_table,
 )
 
 
@@ -36,6 +37,8 @@ def models(content):
     if (prices := other_settings_table(content)) is not None:
         words = tuple(_settings_words(content, model) for model in other_settings(content))
         blocks += [Heading("One solver with other settings", "settings"), Items(words), prices]
+    if (helped := two_levels_table(content)) is not None:
+        blocks += [Heading("Mean displacement of few samples, with the help of many", "two-levels"), helped]
     scores = scores_table(content)
     if scores is not None:
         blocks += [Heading("Scores against the measured curves", "scores"), scores]

@@ -12,8 +12,8 @@ from blockshake.simulation.run_histories import joint_figures
 from blockshake.simulation.simulate import simulate
 from blockshake.store import structure_digest
 from blockshake.study.ensembles.ensemble import DECIMALS, run_as_sample
-from blockshake.study.sampling.latin_hypercube import load_design
 from blockshake.study.sampling.sample_parameters import sample_parameters
+from blockshake.study.sampling.sample_table import load_design
 
 
 class CaseRuns(NamedTuple):

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.record_set import DrawnMotions
 from blockshake.errors import InputError
 from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
@@ -115,12 +116,15 @@ def driving_motions(case, base, seed):
     base : xarray.Dataset, path or None
         From `measured_input`, or its file; not used where the input is commanded.
     seed : int
-        Of the design: a sample of another design has another draw of the measured motion.
+        Of the design: a sample of another design has another draw of the measured motion, or of the records.
 
     Notes
     -----
     A draw depends on structure, motion, scale, seed and sample: it is the same for all models and in any order.
     """
+    if case.get("intensity"):
+        drawn = DrawnMotions.of(case)
+        return lambda sample: drawn.motion(drawn.draw(sample, seed))
     if case["input"] == COMMANDED:
         motion = commanded(case)
         return lambda sample: motion

@@ -69,13 +69,27 @@ def fit_capacity(lower, upper):
     return Capacity(float(np.exp(answer.x[0])), float(np.exp(answer.x[1])))
 
 
-def likely_capacities(lower, upper):
+def estimate_capacity(lower, upper, weight=1.0):
+    """`fit_capacity`, the `Capacity` of many values that are as likely as 95 % allows, and the function that gives the
+    limits of a function of these along its last axis.
+
+    ``weight``: share of the capacities that are independent of each other, by which the limits widen [1]. NaN stands
+    for all where no dispersion is known: all capacities then lie between two levels.
+    """
+    fitted, unknown = fit_capacity(lower, upper), Capacity(np.full(1, np.nan), np.full(1, np.nan))
+    likely = likely_capacities(lower, upper, weight) if fitted.dispersion > 0.0 else unknown
+    return fitted, likely, lambda values: np.stack([values.min(axis=-1), values.max(axis=-1)])
+
+
+def likely_capacities(lower, upper, weight=1.0):
     """`Capacity` of many values, of which those of a function of it span the limits of 95 % of that function.
 
     Parameters
     ----------
     lower, upper
         Of `fit_capacity`, which finds a dispersion above 0 in them.
+    weight : float
+        Of a capacity in the likelihood [1].
 
     Returns
     -------
@@ -90,6 +104,7 @@ def likely_capacities(lower, upper):
     the dispersion in 79 of 100 cases of 20 samples.
     """
     low, high, counts, ends = _logarithms(lower, upper)
+    counts = weight * counts
     middle = np.linspace(ends.min() - _BEYOND, ends.max() + _BEYOND, _MEDIANS)[:, None]
     spread = np.geomspace(_NARROWEST, _WIDEST, _DISPERSIONS)
     likelihood = np.zeros((_MEDIANS, _DISPERSIONS))

@@ -3,12 +3,13 @@
 import numpy as np
 import xarray as xr
 
-from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.load_motion import scaled
 from blockshake.dynamics.system import FINISHED, Status
 from blockshake.geometry.reference_block import half_width
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.simulate import simulate
 from blockshake.store import structure_digest
+from blockshake.study.ensembles.case_input import COMMANDED, driving_motions
 from blockshake.study.ensembles.ensemble import describe
 
 _DESCRIBED = {
@@ -20,17 +21,19 @@ _DESCRIBED = {
 }
 
 
-def climb_samples(runs, rows, ladder, store):
+def climb_samples(runs, rows, ladder, store, seed=0):
     """Levels that each sample of a case passes, from the restored stack each time.
 
     Parameters
     ----------
     runs : CaseRuns
-        With ``motion`` and ``baseline`` of the case.
+        With ``motion``, ``baseline`` and ``intensity`` of the case.
     rows : pandas.DataFrame
         Sampled values, index the sample, contact stiffness included.
     ladder : Ladder
     store : Store
+    seed : int
+        Of the design, by which samples draw records.
 
     Returns
     -------
@@ -45,9 +48,10 @@ def climb_samples(runs, rows, ladder, store):
     one that it did not pass; its capacity is the first that it did not.
     """
     structure = load_structure(runs.case["structure"])
+    motions = driving_motions(runs.case | {"scale": 1.0, "input": COMMANDED}, None, seed)
     climbs = []
     for sample, row in rows.iterrows():
-        rungs = climb(structure, runs, runs.parameters(row, structure), ladder, store)
+        rungs = climb(structure, runs, motions(sample), runs.parameters(row, structure), ladder, store)
         climbs.append(rungs)
         store.say(f"{structure.file.name} {runs.model} sample {sample}: {_words(rungs)}")
     return gathered(
@@ -55,14 +59,16 @@ def climb_samples(runs, rows, ladder, store):
     )
 
 
-def climb(structure, runs, parameters, ladder, store):
+def climb(structure, runs, motion, parameters, ladder, store):
     """Simulate one structure at growing intensities, each from the restored stack.
 
     Parameters
     ----------
     structure : Structure
     runs : CaseRuns
-        With ``motion`` and ``baseline`` of the case, and its duration.
+        With the duration of the case.
+    motion : GroundMotion
+        Of the factor 1.
     parameters : dict
         Parameters of the run by dotted name, as `simulate` takes them.
     ladder : Ladder
@@ -83,7 +89,7 @@ def climb(structure, runs, parameters, ladder, store):
     """
     rungs, largest_drift = [], ladder.largest_drift or half_width(structure)
     for scale in ladder.scales.tolist():
-        outcome = _rung(structure, runs, parameters, scale, store)
+        outcome = _rung(structure, runs, scaled(motion, scale, motion.name), parameters, store)
         passed = outcome["status"] == Status.COMPLETED and outcome["peak"] <= largest_drift
         rungs.append({"scale": scale, **outcome, "passed": passed})
         if not passed:
@@ -91,9 +97,8 @@ def climb(structure, runs, parameters, ladder, store):
     return rungs
 
 
-def _rung(structure, runs, parameters, scale, store):
+def _rung(structure, runs, motion, parameters, store):
     """How one run ended, and the largest drift in it [m]."""
-    motion = load_motion(runs.case["motion"], scale, runs.case["baseline"])
     time_step, duration = runs.settings["time_step"], runs.case["duration"]
 
     def simulated(checkpoint):

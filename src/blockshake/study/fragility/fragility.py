@@ -7,10 +7,17 @@ from blockshake.statistics.intervals import CONFIDENCE, share_interval
 from blockshake.store import load_made
 from blockshake.study.ensembles.ensemble import describe
 from blockshake.study.ensembles.envelope import BOUNDS, QUANTILES, over_samples
-from blockshake.study.fragility.capacity import Capacity, fit_capacity, likely_capacities
+from blockshake.study.fragility.capacity import estimate_capacity
 
 SAFE = 0.05  # probability of a potential collapse that a safe level may have
-_POINTS = 101  # of the curve
+POINTS = 101  # of the curve
+ESTIMATES = {
+    "median": lambda fragility, fine: fragility.median,
+    "dispersion": lambda fragility, fine: fragility.dispersion,
+    "safe": lambda fragility, fine: fragility.level(SAFE),
+    "curve": lambda fragility, fine: fragility.probability(fine),
+}
+"""What is told of a fragility with its limits: functions of it, and of levels."""
 _DESCRIBED = {
     "known": ("samples of which it is known whether they pass this scale", "1"),
     "share": ("share of these that do not pass it, or did not pass a lower one", "1"),
@@ -64,33 +71,21 @@ def fragility(climbed):
     known = failed + (lower[:, None] >= scales - 1e-9).sum(axis=0)
     numbers = zip(failed, known, len(lower) - known, strict=True)
     limits = np.array([share_interval(*map(int, one)) for one in numbers])
-    fine = np.linspace(scales[0], scales[-1], _POINTS)
-    fitted = fit_capacity(lower, upper)
-    is_spread = fitted.dispersion > 0.0  # else all capacities lie between two factors, and no more is known
-    likely = (
-        likely_capacities(lower, upper) if is_spread else Capacity(np.full(1, np.nan), np.full(1, np.nan))
-    )
-
-    def with_limits(of):
-        values = of(likely)
-        return of(fitted), np.stack([values.min(axis=-1), values.max(axis=-1)])
-
+    fine = np.linspace(scales[0], scales[-1], POINTS)
+    fitted, likely, limits_over = estimate_capacity(lower, upper)
     result = climbed.drop_vars("peak").assign(
         known=("scale", known),
         share=("scale", np.divide(failed, known, out=np.full(len(scales), np.nan), where=known > 0)),
         share_interval=(("bound", "scale"), limits.T),
         peak=over_samples(climbed["peak"], xr.DataArray(list(QUANTILES), dims="quantile")),
     )
-    for name, of in (
-        ("median", lambda capacity: capacity.median),
-        ("dispersion", lambda capacity: capacity.dispersion),
-        ("safe_scale", lambda capacity: capacity.level(SAFE)),
-    ):
-        value, bounds = with_limits(of)
-        result[name], result[f"{name}_interval"] = ((), float(value)), ("bound", bounds)
-    value, bounds = with_limits(lambda capacity: capacity.probability(fine[:, None]))
-    value = value[:, 0] if is_spread else np.full(_POINTS, np.nan)
-    result["curve"], result["curve_interval"] = ("fine_scale", value), (("bound", "fine_scale"), bounds)
+    for name, of in ESTIMATES.items():
+        dims = ("fine_scale",) if name == "curve" else ()
+        value, name = of(fitted, fine), "safe_scale" if name == "safe" else name
+        if name == "curve" and not fitted.dispersion > 0.0:
+            value = np.full(POINTS, np.nan)
+        result[name] = dims, value
+        result[f"{name}_interval"] = ("bound", *dims), limits_over(of(likely, fine[:, None]))
     result = result.assign_coords(bound=list(BOUNDS), quantile=list(QUANTILES), fine_scale=fine)
     describe(result, _DESCRIBED)
     result.attrs |= {"title": "fragility of a structure under one motion", "confidence": CONFIDENCE}

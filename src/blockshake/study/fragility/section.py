@@ -17,21 +17,27 @@ from blockshake.pages.wording import (
 )
 from blockshake.statistics.intervals import CONFIDENCE
 from blockshake.study.ensembles.outcomes import count_outcomes
-from blockshake.study.fragility.figure import plot_fragility
+from blockshake.study.fragility.cloud_section import cloud_blocks
+from blockshake.study.fragility.figure import measure_words, plot_fragility
 from blockshake.study.fragility.fragility import SAFE
 
 _SHOWN_SHARES = (0.5, 0.95)
 
 
 def fragility(content):
-    """Samples that climb the ladder of intensities; None where the study asks for none."""
-    if not content.fragility:
-        return None
+    """Samples that climb the ladder of intensities or draw their motions; None where the study has neither."""
+    blocks = [*(_climbs(content) if content.fragility else []), *cloud_blocks(content)]
+    return Section("Fragility", "fragility", tuple(blocks)) if blocks else None
+
+
+def _climbs(content):
+    """Blocks on the samples that climb."""
     asked = content.study["fragility"]
     limits = " or ".join(
         sorted({millimetres(result.attrs["largest_drift"]) for result in content.fragility.values()})
     )
-    blocks = [
+    one = any(content.cases[name].settings.get("intensity") is None for name in content.fragility)
+    return [
         Text(
             f"Samples that climb the ladder by {model_label(asked['model'])}: each is shaken by the case's commanded "
             "motion at rising factors, from the restored stack each time, until it collapses, still falls as its "
@@ -40,8 +46,12 @@ def fragility(content):
             "that it did not. Where these tell "
             "one, the figure has the lognormal distribution of largest likelihood for such bounds (incremental dynamic "
             "analysis, Vamvatsikos and Cornell 2002; fragility by maximum likelihood, Shinozuka et al. 2000). The "
-            "spread is that of the sampled variables. The motion is one: another motion of the same peak has another "
-            "fragility."
+            "spread is that of the sampled variables"
+            + (
+                ". The motion is one: another motion of the same peak has another fragility."
+                if one
+                else " and of the motions that the samples draw."
+            )
         ),
         Items(tuple(words(content, name) for name in content.fragility)),
         Figure(
@@ -52,13 +62,12 @@ def fragility(content):
         ),
         _table(content),
     ]
-    return Section("Fragility", "fragility", tuple(blocks))
 
 
 def words(content, name):
     """Median capacity, safe factor and what the samples do not tell, of one case in sentences."""
     result, case = content.fragility[name], content.cases[name]
-    unit = content.motions[case.motion].attrs["peak_acceleration"]
+    unit, measure = _unit(content, case)
     size = result.sizes["sample"]
     model = model_label(content.study["fragility"]["model"])
     who = f"{name}, {case.motion}, {size} samples by {model}"
@@ -84,7 +93,7 @@ def words(content, name):
         low, high = float(result["capacity_lower"].max()), float(result["capacity_upper"].min())
         return (
             f"{who}: all capacities lie between {given(low)} and {given(high)} times the motion ({number(low * unit)} "
-            f"and {number(high * unit)} m/s{SQUARED}). The levels are too far apart to tell more.{less}"
+            f"and {number(high * unit)} {measure}). The levels are too far apart to tell more.{less}"
         )
     if float(result["dispersion"]) < _smallest_known(result):
         less += (
@@ -93,10 +102,19 @@ def words(content, name):
         )
     return (
         f"{who}: half of the capacities are below {_limited(result, 'median')} times the motion "
-        f"({number(median * unit)} m/s{SQUARED}), {percent(SAFE)} % below {_limited(result, 'safe_scale')} "
-        f"({number(float(result['safe_scale']) * unit)} m/s{SQUARED}); limits of {quantile_percent(CONFIDENCE)} in "
+        f"({number(median * unit)} {measure}), {percent(SAFE)} % below {_limited(result, 'safe_scale')} "
+        f"({number(float(result['safe_scale']) * unit)} {measure}); limits of {quantile_percent(CONFIDENCE)} in "
         f"brackets. Dispersion: {_limited(result, 'dispersion')}.{less}"
     )
+
+
+def _unit(content, case):
+    """Intensity of the factor 1, and its unit in words: peak acceleration, or the level that records are scaled to."""
+    clouds = [one.cloud for one in case.responses.values() if one.cloud is not None]
+    if not clouds or not clouds[0].attrs["levels"]:
+        return content.motions[case.motion].attrs["peak_acceleration"], f"m/s{SQUARED}"
+    name, unit = measure_words(clouds[0])
+    return case.settings["intensity"]["levels"][0], f"{unit}, {name}"
 
 
 def _smallest_known(result):
@@ -115,7 +133,7 @@ def _table(content):
     rows = []
     for name, result in content.fragility.items():
         case = content.cases[name]
-        unit = content.motions[case.motion].attrs["peak_acceleration"]
+        unit, measure = _unit(content, case)
         for scale in result["scale"].values:
             at = result.sel(scale=scale)
             peaks = " / ".join(millimetres(at["peak"].sel(quantile=share)) for share in _SHOWN_SHARES)
@@ -123,7 +141,7 @@ def _table(content):
             climbed = int(at["passed"].notnull().sum())
             low, high = (percent(at["share_interval"].sel(bound=side)) for side in ("lower", "upper"))
             rows.append((
-                name, given(scale), number(scale * unit), str(climbed),
+                name, given(scale), f"{number(scale * unit)} {measure}", str(climbed),
                 f"{percent(at['share'])} [{low}, {high}] of {known}" if known else MISSING,
                 peaks if climbed else MISSING,
             ))  # fmt: skip
@@ -135,7 +153,7 @@ def _table(content):
         f"largest of the mass centre of any block from the slab, quantiles {quantiles} over the samples that climbed "
         "this level.",
         (
-            "Case", "Factor", f"Peak acceleration [m/s{SQUARED}]", "Climbed", "Not passed [%]",
+            "Case", "Factor", "Peak acceleration, or measure", "Climbed", "Not passed [%]",
             f"Displacement, {quantiles} [mm]",
         ),
         tuple(rows), "lrrrrr",

@@ -75,6 +75,8 @@ def _asked(content):
     samples = count_words(many, "sample") if few == many else f"{few} to {many} samples"
     used = [name for name in content.distributions if content.users(name)]
     kinds = dict.fromkeys(parameter_label(name).split(" of ")[0].split(",")[0] for name in used)
+    if any("records" in content.motions[case.motion].attrs for case in content.cases.values()):
+        kinds |= {"ground motion": None}
     uncertain = f"Uncertain: {listed(list(kinds))}." if kinds else ""
     return f"Asked: {cases}, by {listed(labels)}, {samples} each. {uncertain}".rstrip()
 
@@ -92,6 +94,8 @@ def _grouped(content, names):
 def _under(content, case):
     """Motion of a case with its scale and peak."""
     peak = f"{number(content.peak_acceleration(case))} m/s{SQUARED}"
+    if count := content.motions[case.motion].attrs.get("records"):
+        return f"{count_words(count, 'record')} of {case.motion} x {given(case.settings['scale'])} (median {peak})"
     return f"{case.motion} x {given(case.settings['scale'])} ({peak})"
 
 

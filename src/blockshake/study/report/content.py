@@ -6,6 +6,7 @@ from pathlib import Path
 import pandas as pd
 import xarray as xr
 
+from blockshake.dynamics.record_set import record_files
 from blockshake.files import content_digest, file_digest, load_json, named_file
 from blockshake.geometry.structure import Structure, load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
@@ -17,20 +18,22 @@ from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.ensemble import measured_curves
 from blockshake.study.ensembles.timing import read_timings
 from blockshake.study.sampling.distributions import load_distributions
-from blockshake.study.sampling.latin_hypercube import load_design
 from blockshake.study.sampling.sample_parameters import has_parameter
+from blockshake.study.sampling.sample_table import load_design
 
 
 @dataclass(frozen=True)
 class Response:
     """Results of one case by one model: envelope, figures of the samples, motion of those that are shown, coverage of
-    the measured curves where there are any, and sensitivity to the random variables."""
+    the measured curves where there are any, sensitivity to the random variables, and fragility over the intensity of
+    the motions where the samples draw these."""
 
     envelope: xr.Dataset
     samples: xr.Dataset
     shown: xr.Dataset
     comparison: xr.Dataset | None
     sensitivity: xr.Dataset
+    cloud: xr.Dataset | None = None
 
 
 @dataclass(frozen=True)
@@ -149,7 +152,11 @@ class Content:
     versions: dict
 
     def peak_acceleration(self, case):
-        """Peak ground acceleration of a case's scaled motion [m/s2]."""
+        """Peak ground acceleration of a case's scaled motion, or the median of those that its samples draw [m/s2]."""
+        clouds = [one.cloud for one in case.responses.values() if one.cloud is not None]
+        if clouds:
+            largest = max(clouds, key=lambda cloud: cloud.sizes["sample"])
+            return float(largest["peak_acceleration"].median())
         return case.settings["scale"] * self.motions[case.motion].attrs["peak_acceleration"]
 
     def users(self, variable):
@@ -184,9 +191,8 @@ def load_content(study, results, logs, only=None):
         motions[name] = load_made(results / "motions" / f"{name}.nc")
     design = results / "design.csv"
     stiffness = [results / "stiffness" / f"{name}.csv" for name, _ in read["stiffness"]]
-    inputs = [
-        named_file(f"{kind}s", case[kind]) for kind in ("structure", "motion") for case in cases.values()
-    ]
+    inputs = [named_file("structures", case["structure"]) for case in cases.values()]
+    inputs += [path for case in cases.values() for path in record_files(case["motion"])]
     tests = [case.test_file for case in loaded.values() if case.test_file]
     return Content(
         study=study,
@@ -219,6 +225,7 @@ def _case(study, read, name, settings):
             *(read[kind][name, model] for kind in ("envelopes", "samples", "shown")),
             comparison=read["comparisons"].get((name, model)),
             sensitivity=read["sensitivities"][name, model],
+            cloud=read["clouds"].get((name, model)),
         )
         for model in study["models"]
     }

@@ -2,7 +2,7 @@
 
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from blockshake.pages.drawing import BLACK, BLUE, RED, new_figure
+from blockshake.pages.drawing import BLACK, BLUE, LIGHT_GREY, RED, new_figure
 from blockshake.pages.wording import SQUARED
 
 _ROWS = (
@@ -41,6 +41,8 @@ def plot_spectra(motions):
     panels = figure.subplots(1, len(motions), sharey=True, squeeze=False)[0]
     entries = {}
     for axes, motion in zip(panels, motions, strict=True):
+        for spectrum in motion["spectra"].to_numpy() if "spectra" in motion else ():
+            axes.plot(motion["period"], spectrum, color=LIGHT_GREY, linewidth=0.6)
         axes.plot(
             motion["period"], motion["pseudo_acceleration"], color=BLUE, linewidth=1.1, label="motion used"
         )

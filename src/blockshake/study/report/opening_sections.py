@@ -214,7 +214,7 @@ def motions(content):
     targets = any("target" in one for one in used)
     blocks = [
         Text("Motions at 100 %; the cases multiply them by their scale."),
-        Items(tuple(f"{one.attrs['name']}: {provenance(one.attrs)}." for one in used)),
+        Items(tuple(f"{one.attrs['name']}: {provenance(one.attrs)}{_of_set(one)}." for one in used)),
         Figure(
             "Ground acceleration, velocity and displacement along x"
             + ("; dashed: end of the window that the cases simulate." if any(cut.values()) else "."),
@@ -230,6 +230,14 @@ def motions(content):
     if any(case.base is not None for case in content.cases.values()):
         blocks.append(_bases_table(content))
     return Section("Ground motions", "motions", tuple(blocks))
+
+
+def _of_set(motion):
+    """Of how many records a motion is the one that is shown."""
+    count = motion.attrs.get("records")
+    return (
+        f"; shown of {count_words(count, 'record')} as that of the median peak acceleration" if count else ""
+    )
 
 
 def _motions_table(motions):

@@ -1,16 +1,18 @@
-"""Random variables of the study, log-normal or tabulated, by dotted parameter name; Table 2 by default."""
+"""Random variables of the study by dotted parameter name, of any distribution; Table 2 by default."""
 
 import re
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field, field_validator
+import scipy
+from pydantic import ConfigDict, Field, ValidationError, field_validator, model_validator
 from scipy.special import ndtr, ndtri
 
-from blockshake.errors import InputError
+from blockshake.errors import InputError, faults_of
 from blockshake.geometry.schema import EXTENSION
 from blockshake.quantities import PHYSICAL, unit_of
 from blockshake.simulation.models import CALIBRATED
+from blockshake.study.sampling.sample_table import load_design
 from blockshake.validation import Finite, Positive, Strict, validated
 
 _PROPERTIES = {
@@ -31,7 +33,7 @@ class Lognormal(Strict):
     """
 
     distribution: Literal["lognormal"] = Field(
-        "lognormal", description="the usual kind; the other is `tabulated`, with `values`"
+        "lognormal", description="the usual kind; others are in docs/guide/sampling.md"
     )
     mean: Positive = Field(description="mean of the variable itself, SI")
     cov: Positive = Field(description="standard deviation over mean [1]")
@@ -74,10 +76,30 @@ class Lognormal(Strict):
 _FINE = 64  # points of a stratum whose mean is taken
 
 
-class Tabulated(Strict):
+class _ByQuantiles(Strict):
+    """A variable whose ``quantile(probability)`` is known."""
+
+    @property
+    def median(self):
+        """Value with half the probability below it."""
+        return float(self.quantile(0.5))
+
+    def stratum_medians(self, size):
+        """Medians of ``size`` strata of equal probability, rising, shape (size,)."""
+        return self.quantile((np.arange(size) + 0.5) / size)
+
+    def stratum_means(self, size):
+        """Means of the variable within ``size`` strata of equal probability, rising, shape (size,)."""
+        return self._points(size).mean(axis=1)
+
+    def _points(self, size):
+        return self.quantile((np.arange(size * _FINE) + 0.5) / (size * _FINE)).reshape(size, _FINE)
+
+
+class Tabulated(_ByQuantiles):
     """A variable of any shape, such as a posterior, by its quantiles; straight between them."""
 
-    distribution: Literal["tabulated"] = Field(description="the other kind")
+    distribution: Literal["tabulated"] = Field(description="quantiles")
     values: Annotated[tuple[Finite, ...], Field(min_length=2)] = Field(
         description="quantiles at even steps of the probability from 0 to 1, rising, SI"
     )
@@ -99,11 +121,6 @@ class Tabulated(Strict):
         """Standard deviation over the size of the mean [1], from the fine points of ten strata."""
         return float(self._points(10).std() / abs(self.mean)) if self.mean else np.inf
 
-    @property
-    def median(self):
-        """Value with half the probability below it."""
-        return float(self.quantile(0.5))
-
     def quantile(self, probability):
         """Values with the probabilities ``probability`` (float or array, in [0, 1]) below them."""
         return np.interp(probability, np.linspace(0.0, 1.0, len(self.values)), self.values)
@@ -114,19 +131,124 @@ class Tabulated(Strict):
         part = np.searchsorted(self.values, value, side="right")
         return np.concatenate([[0.0], parts, [0.0]])[part]
 
-    def stratum_medians(self, size):
-        """Medians of ``size`` strata of equal probability, rising, shape (size,)."""
-        return self.quantile((np.arange(size) + 0.5) / size)
 
-    def stratum_means(self, size):
-        """Means of the variable within ``size`` strata of equal probability, rising, shape (size,)."""
-        return self._points(size).mean(axis=1)
+class Discrete(_ByQuantiles):
+    """A variable of some values: with probabilities, or those of a table, of which each is as likely as another."""
 
-    def _points(self, size):
-        return self.quantile((np.arange(size * _FINE) + 0.5) / (size * _FINE)).reshape(size, _FINE)
+    distribution: Literal["discrete", "empirical"] = Field(
+        description="values with probabilities, or of a table"
+    )
+    values: Annotated[tuple[Finite, ...], Field(min_length=2)] = Field(description="not falling, SI")
+    probabilities: tuple[Positive, ...] | None = Field(
+        None, description="of the values, sum 1; equal by default [1]"
+    )
+
+    @model_validator(mode="after")
+    def _fits(self):
+        if (np.diff(self.values) < 0.0).any() or self.values[0] == self.values[-1]:
+            raise ValueError("expected values that rise")
+        shares = self.probabilities
+        if shares and (
+            len(shares) != len(self.values) or not np.isclose(sum(shares), 1.0, rtol=0.0, atol=1e-6)
+        ):
+            raise ValueError("expected a probability for each value, and a sum of 1")
+        return self
+
+    @property
+    def _shares(self):
+        return np.array(self.probabilities or np.full(len(self.values), 1.0 / len(self.values)))
+
+    @property
+    def mean(self):
+        """Mean of the variable."""
+        return float(self._shares @ self.values)
+
+    @property
+    def cov(self):
+        """Standard deviation over the size of the mean [1]."""
+        variance = self._shares @ (np.array(self.values) - self.mean) ** 2
+        return float(np.sqrt(variance) / abs(self.mean)) if self.mean else np.inf
+
+    def quantile(self, probability):
+        """Smallest values with at least the probabilities ``probability`` (float or array, in (0, 1)) up to them."""
+        place = np.searchsorted(np.cumsum(self._shares) + 1e-9, probability)
+        return np.array(self.values)[np.minimum(place, len(self.values) - 1)]
+
+    def density(self, value):
+        """NaN: there is no density."""
+        return np.full(np.shape(value), np.nan)
 
 
-Distribution = Lognormal | Tabulated
+class OfScipy(_ByQuantiles):
+    """A continuous variable by its name in `scipy.stats`, whose other keys are its shape parameters there.
+
+    ``mean`` and ``cov`` may stand in place of ``loc`` and ``scale``, which they then tell.
+    """
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+    __pydantic_extra__: dict[str, Finite] = Field(init=False)
+    distribution: str = Field(description="name in scipy.stats; `normal` is its norm")
+    loc: Finite = Field(0.0, description="as in scipy.stats, SI")
+    scale: Positive = Field(1.0, description="as in scipy.stats, SI")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_moments(cls, given):
+        moments = [given.get(name) for name in ("mean", "cov")]
+        if {"loc", "scale"} & set(given) or not all(isinstance(one, (int, float)) for one in moments):
+            return given
+        rest = {name: value for name, value in given.items() if name not in ("mean", "cov")}
+        try:
+            standard = cls.model_validate(rest)._frozen
+        except ValidationError:  # told once the whole is validated
+            return rest
+        scale = moments[1] * abs(moments[0]) / float(standard.std())
+        return rest | {"loc": moments[0] - scale * float(standard.mean()), "scale": scale}
+
+    @model_validator(mode="after")
+    def _is_known(self):
+        if not isinstance(self._known, scipy.stats.rv_continuous):
+            expected = "expected lognormal, tabulated, discrete, empirical, or the name of a continuous distribution "
+            expected += f"of scipy.stats such as norm, uniform, truncnorm, not {self.distribution}"
+            raise InputError("", "variable.distribution", expected)
+        names = [name.strip() for name in (self._known.shapes or "").split(",") if name.strip()]
+        for name in sorted(set(names) ^ set(self.model_extra)):
+            expected = f"expected the keys {', '.join([*names, 'loc', 'scale'])}, as scipy.stats.{self._known.name} has"
+            raise InputError("", f"variable.{name}", expected)
+        if not np.isfinite([self.median, self.mean, self._frozen.std()]).all():
+            raise ValueError(f"expected parameters by which {self.distribution} has a mean and a variance")
+        return self
+
+    @property
+    def _known(self):
+        return getattr(scipy.stats, _OTHER_NAMES.get(self.distribution, self.distribution), None)
+
+    @property
+    def _frozen(self):
+        return self._known(**self.model_extra, loc=self.loc, scale=self.scale)
+
+    @property
+    def mean(self):
+        """Mean of the variable."""
+        return float(self._frozen.mean())
+
+    @property
+    def cov(self):
+        """Standard deviation over the size of the mean [1]."""
+        return float(self._frozen.std() / abs(self.mean)) if self.mean else np.inf
+
+    def quantile(self, probability):
+        """Values with the probabilities ``probability`` (float or array, in (0, 1)) below them."""
+        return self._frozen.ppf(probability)
+
+    def density(self, value):
+        """Probability density, in one over the variable's unit."""
+        return self._frozen.pdf(value)
+
+
+_OTHER_NAMES = {"normal": "norm"}
+Distribution = Lognormal | Tabulated | Discrete | OfScipy
+_KINDS = {"lognormal": Lognormal, "tabulated": Tabulated, "discrete": Discrete, "empirical": Discrete}
 
 
 def known_as(name, names):
@@ -169,16 +291,17 @@ def load_distributions(mapping, where):
     Parameters
     ----------
     mapping : dict of str to dict, or None
-        ``{name: {distribution: lognormal, mean: ..., cov: ...}}`` or ``{distribution: tabulated, values: ...}``, names
-        as ``friction.MATERIAL.MATERIAL``, ``materials.MATERIAL.PROPERTY``, ``shapes.SHAPE.hollow`` or, of structures
-        that state an extension, ``extension.NAME`` of any number. It replaces
+        ``{name: {distribution: lognormal, mean: ..., cov: ...}}``, the keys of `Tabulated`, of `Discrete` (of an
+        empirical one in place of ``values`` also ``file``, a CSV table, and ``column``, by default the variable's name)
+        or of `OfScipy`; names as ``friction.MATERIAL.MATERIAL``, ``materials.MATERIAL.PROPERTY``,
+        ``shapes.SHAPE.hollow`` or, of structures that state an extension, ``extension.NAME`` of any number. It replaces
         Table 2 as a whole: what it does not name is not random. None means Table 2.
     where : str
         File or option to name in an error.
 
     Returns
     -------
-    dict of str to Lognormal or Tabulated
+    dict of str to Lognormal, Tabulated, Discrete or OfScipy
         In the order of the mapping.
 
     Raises
@@ -201,11 +324,28 @@ def load_distributions(mapping, where):
             )
         if twin := known_as(name, variables):
             raise InputError(where, f"distributions.{name}", f"expected every pair once; it is {twin} too")
-        kind = (
-            Tabulated if isinstance(entry, dict) and entry.get("distribution") == "tabulated" else Lognormal
+        said = entry.get("distribution", "lognormal") if isinstance(entry, dict) else "lognormal"
+        if said == "empirical" and "file" in entry:
+            entry = _of_table(name, entry, where)
+        variables[name] = validated(
+            _KINDS.get(said, OfScipy) if isinstance(said, str) else Lognormal,
+            entry,
+            where,
+            f"distributions.{name}",
         )
-        variables[name] = validated(kind, entry, where, f"distributions.{name}")
     return variables
+
+
+def _of_table(name, entry, where):
+    """Entry of an empirical variable with the values of its column."""
+    given = dict(entry)
+    path, column = given.pop("file"), given.pop("column", name)
+    with faults_of(where, f"distributions.{name}.file"):
+        values = load_design(path)
+    if column not in values:
+        expected = f"expected one of the columns of {path}: {', '.join(values)}"
+        raise InputError(where, f"distributions.{name}.column", expected)
+    return given | {"values": sorted(values[column].tolist())}
 
 
 def _unit(name):

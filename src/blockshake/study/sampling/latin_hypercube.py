@@ -1,20 +1,19 @@
-"""Latin hypercube designs with controlled correlation, and their CSV form."""
+"""Latin hypercube designs with controlled correlation, and designs of own samples."""
 
-import csv
-import io
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pandas as pd
+import scipy
 
 from blockshake.errors import InputError
-from blockshake.files import AnyPath, read_text, write_text
+from blockshake.files import AnyPath
 from blockshake.study.sampling.correlation_control import arrange
 from blockshake.study.sampling.correlation_target import check_correlation, load_correlation
 from blockshake.study.sampling.distributions import TABLE_2, known_as, load_distributions
-from blockshake.tables.numbers import plain_number
+from blockshake.study.sampling.sample_table import load_design
 
 SMALLEST_SIZE, LARGEST_SIZE = 10, 1_000_000  # samples; the largest take 2 GB
 DEFAULT_EFFORT = 8
@@ -33,7 +32,7 @@ class SampleDesign:
     kind : str
         ``pearson``: of the physical values; ``spearman``: of their ranks.
     stratum : str
-        ``median`` or ``mean``: which value stands for each stratum.
+        ``median`` or ``mean``: which value stands for each stratum; ``own``: the samples are those of a table.
     seed, effort : int
         As given to `draw_samples`.
     """
@@ -105,7 +104,7 @@ def draw_samples(
         Samples, 10 to a million; as many strata of equal probability, each hit once by each variable.
     seed : int
         Not negative; same seed, same values.
-    distributions : dict of str to Lognormal, Tabulated or dict
+    distributions : dict of str to Lognormal, Tabulated, Discrete, OfScipy or dict
         By dotted name, also in the notation of a study, see `load_distributions`; Table 2 of Zhou et al. (2023) by
         default.
     correlation : pandas.DataFrame, str or path, optional
@@ -160,8 +159,8 @@ def draw_samples(
 
 
 def _correlated(values, kind):
-    """Values that the correlation is of: the sampled ones, or their ranks (no two values of a column are equal)."""
-    return values if kind == "pearson" else np.argsort(np.argsort(values, axis=0), axis=0).astype(float)
+    """Values that the correlation is of: the sampled ones, or their ranks from 0, equal ones at their mean rank."""
+    return values if kind == "pearson" else scipy.stats.rankdata(values, axis=0) - 1.0
 
 
 def _check_options(size, seed, stratum, kind, effort):
@@ -219,53 +218,14 @@ def complete_correlation(correlation, names):
 
 
 def draw_design(ensemble):
-    """`SampleDesign` of a configuration's ensemble, a mapping with the first four arguments of `draw_samples`."""
-    return draw_samples(*(ensemble[key] for key in ("size", "seed", "distributions", "correlation")))
+    """`SampleDesign` of a configuration's ensemble: its own table, or a mapping with four arguments of `draw_samples`.
 
-
-def write_design(path, values):
-    """Write a design as CSV: one row a sample, columns the dotted names, every digit, atomically."""
-    lines = [",".join(values.columns)]
-    lines += [",".join(repr(float(value)) for value in row) for row in values.to_numpy()]
-    write_text(path, "\n".join(lines) + "\n")
-
-
-def load_design(path):
-    """Values of a design from CSV.
-
-    Parameters
-    ----------
-    path : str or path
-        One row a sample, columns the dotted names.
-
-    Returns
-    -------
-    pandas.DataFrame, shape (size, n_variables)
-        Index ``sample`` from 0, SI.
-
-    Raises
-    ------
-    InputError
-        Missing file, no rows, a name twice, a row of another length, or an entry that is no finite number.
+    Own samples stay in their order; the correlation that they have is their target.
     """
-    rows = [row for row in csv.reader(io.StringIO(read_text(path))) if row]
-    if len(rows) < 2:
-        raise InputError(path, "", "expected a header of parameter names and one row a sample")
-    names = [name.strip() for name in rows[0]]
-    for name in names:
-        if not name or names.count(name) > 1:
-            raise InputError(path, name, "expected every column to have a name of its own")
-    values = np.empty((len(rows) - 1, len(names)))
-    for sample, row in enumerate(rows[1:]):
-        if len(row) != len(names):
-            raise InputError(path, f"sample {sample}", f"expected {len(names)} values, not {len(row)}")
-        for column, cell in enumerate(row):
-            values[sample, column] = _finite(cell, path, f"sample {sample}, {names[column]}")
-    return pd.DataFrame(values, columns=names, index=pd.RangeIndex(len(values), name="sample"))
-
-
-def _finite(cell, path, key):
-    value = float(plain_number(cell) or "nan")
-    if not np.isfinite(value):
-        raise InputError(path, key, f"expected a finite number, not '{cell.strip()}'")
-    return value
+    if ensemble.get("table"):
+        values = load_design(ensemble["table"])
+        reached = pd.DataFrame(
+            np.atleast_2d(np.corrcoef(values, rowvar=False)), values.columns, values.columns
+        )
+        return SampleDesign(values, reached, reached, "pearson", "own", int(ensemble["seed"]), 0)
+    return draw_samples(*(ensemble[key] for key in ("size", "seed", "distributions", "correlation")))

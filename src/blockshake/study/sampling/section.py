@@ -3,7 +3,7 @@
 from blockshake.pages.blocks import Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.units import printed
-from blockshake.pages.wording import model_label, number, parameter_label, percent
+from blockshake.pages.wording import count_words, model_label, number, parameter_label, percent
 from blockshake.study.sampling.distributions import parameter_unit
 from blockshake.study.sampling.figure import plot_samples
 from blockshake.study.sampling.sample_parameters import unused_variables
@@ -15,9 +15,16 @@ def samples(content):
     target = "none" if content.study["ensemble"].get("correlation") is None else "that of the study"
     blocks = (
         Text(
-            f"Latin hypercube of {summary['size']} samples, seed {summary['seed']}; each stratum is represented by its "
-            f"{summary['stratum']}. Correlation asked for: {target}; the {summary['correlation_kind']} correlation "
-            f"differs from it by {number(summary['largest_correlation_error'])} at most.{_without_use(content)}"
+            (
+                f"{count_words(summary['size'], 'sample')} of the user's table {content.study['ensemble']['table']}, "
+                "in its order."
+                if content.study["ensemble"].get("table")
+                else f"Latin hypercube of {summary['size']} samples, seed {summary['seed']}; each stratum is "
+                f"represented by its {summary['stratum']}. Correlation asked for: {target}; the "
+                f"{summary['correlation_kind']} correlation differs from it by "
+                f"{number(summary['largest_correlation_error'])} at most."
+            )
+            + _without_use(content)
         ),
         Figure(
             "Histograms of the samples and target densities.",

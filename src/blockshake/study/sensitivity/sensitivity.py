@@ -12,8 +12,8 @@ from blockshake.statistics.intervals import CONFIDENCE
 from blockshake.statistics.resampling import DRAWS, bootstrap_interval, chance_level
 from blockshake.study.ensembles.ensemble import ALONG_X, POSES, describe, join_batches, relative_to_slab
 from blockshake.study.ensembles.envelope import counted_samples
-from blockshake.study.sampling.latin_hypercube import load_design
 from blockshake.study.sampling.sample_parameters import sample_parameters, unused_variables
+from blockshake.study.sampling.sample_table import load_design
 from blockshake.study.sensitivity.measures import (
     FEWEST_SAMPLES,
     first_order_share,

@@ -1,0 +1,206 @@
+"""Motions that samples draw: records of a folder or a table, each as strong as it is or scaled to an intensity."""
+
+import csv
+import io
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from blockshake.dynamics.intensity import motion_figures, response_spectrum
+from blockshake.dynamics.load_motion import load_motion, scaled
+from blockshake.errors import InputError
+from blockshake.files import content_digest, named_file, read_text, shipped_names
+from blockshake.tables.numbers import plain_number
+from blockshake.validation import Positive, Strict
+
+_FILE, _FACTORS = "file", ("scale", "level")
+
+
+class Intensity(Strict):
+    """Measure of how strong a motion is along x, and the levels that motions are scaled to."""
+
+    measure: Literal["pga", "pgv", "sa"] = Field(
+        "pga",
+        description="peak ground acceleration [m/s2], peak ground velocity [m/s], or pseudo-acceleration at 5 % "
+        "damping [m/s2], along x",
+    )
+    period: Positive | None = Field(None, description="of `sa`, which needs it [s]")
+    levels: tuple[Positive, ...] = Field(
+        (),
+        description="rising, in the unit of the measure: every sample is scaled to one of them, in turn; none leaves "
+        "each motion as strong as it is, or as its table says",
+    )
+
+    @model_validator(mode="after")
+    def _is_whole(self):
+        if (self.measure == "sa") != (self.period is not None):
+            raise ValueError("expected `period` with the measure sa, and with no other")
+        if any(high <= low for low, high in zip(self.levels, self.levels[1:], strict=False)):
+            raise ValueError("expected levels that rise")
+        return self
+
+    def of(self, motion):
+        """The measure of a motion [m/s2 or m/s]."""
+        if self.measure == "sa":
+            return float(response_spectrum(motion, [self.period])[0])
+        return motion_figures(motion)[{"pga": "peak_acceleration", "pgv": "peak_velocity"}[self.measure]]
+
+
+class SetRecord(NamedTuple):
+    """A motion of a set: name and path of its file, its factor, and the level that it is scaled to, if any."""
+
+    name: str
+    path: str
+    scale: float = 1.0
+    level: float | None = None
+
+
+def is_record_set(source):
+    """Whether a path is a folder, or a CSV table with a column ``file``."""
+    path = Path(source)
+    if path.suffix.lower() != ".csv" or not path.is_file():
+        return path.is_dir()
+    with path.open(encoding="utf-8-sig", errors="replace") as table:
+        return _FILE in [cell.strip() for cell in table.readline().split(",")]
+
+
+def record_files(source):
+    """Files of a set of records, its table first, or the one of a motion: paths."""
+    table = [Path(source)] if is_record_set(source) and Path(source).is_file() else []
+    return [*table, *(named_file("motions", record.path) for record in read_records(source))]
+
+
+def read_records(source):
+    """Records of a folder, by name; of a table, row by row; or the one motion that ``source`` is.
+
+    Parameters
+    ----------
+    source : str or path
+        A folder, each file of which is a motion (names that begin with a dot are passed over); a CSV table with the
+        column ``file``, a path from the table's folder or a shipped name, and optionally ``scale`` [1] or ``level``, in
+        the unit of the measure; or what `load_motion` reads.
+
+    Returns
+    -------
+    tuple of SetRecord
+
+    Raises
+    ------
+    InputError
+        An empty folder or table, another column, a row of another length, a file that is not there, a number that is
+        not above zero.
+    """
+    path = Path(source)
+    if not is_record_set(path):
+        return (SetRecord(path.stem, str(source)),)
+    if path.is_dir():
+        files = sorted(file for file in path.iterdir() if file.is_file() and not file.name.startswith("."))
+        records = [SetRecord(file.name, str(file)) for file in files]
+    else:
+        header, *rows = _rows(path)
+        for name in header:
+            if name not in (_FILE, *_FACTORS) or header.count(name) > 1:
+                raise InputError(path, name, "expected the columns file and, of each, scale or level")
+        if set(_FACTORS) <= set(header):
+            raise InputError(path, "level", "expected one of scale and level: a level sets the scale")
+        records = [
+            _record(path, f"row {number}", header, row) for number, row in enumerate(rows, 1) if any(row)
+        ]
+    if not records:
+        raise InputError(path, "", "expected at least one record")
+    return tuple(records)
+
+
+def _rows(path):
+    text = read_text(path).removeprefix("\ufeff")
+    return [[cell.strip() for cell in row] for row in csv.reader(io.StringIO(text))] or [[]]
+
+
+def _record(table, place, header, row):
+    if len(row) != len(header):
+        raise InputError(table, place, f"expected {len(header)} cells, not {len(row)}")
+    cells = dict(zip(header, row, strict=True))
+    name = cells.pop(_FILE)
+    path = name if name in shipped_names("motions") else str(table.parent / name)
+    if not named_file("motions", path).is_file():
+        raise InputError(table, f"{place}, {_FILE}", f"expected a file below {table.parent}, not '{name}'")
+    numbers = {key: float(plain_number(cell) or "nan") for key, cell in cells.items()}
+    for key, value in numbers.items():
+        if not 0.0 < value < np.inf:
+            raise InputError(table, f"{place}, {key}", f"expected a number above 0, not '{cells[key]}'")
+    return SetRecord(Path(name).name, path, **numbers)
+
+
+@dataclass(frozen=True)
+class DrawnMotions:
+    """Motions of a case, one for each of its samples.
+
+    Attributes
+    ----------
+    records : tuple of SetRecord
+    baseline : str or float
+        As for `load_motion`.
+    scale : float
+        Multiplies every motion, after any level [1].
+    intensity : Intensity
+    loaded : dict
+        Motions that were read already, by path and baseline.
+    """
+
+    records: tuple
+    baseline: str | float
+    scale: float
+    intensity: Intensity
+    loaded: dict = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, case, loaded=None):
+        """Those of a case of a study, a mapping with ``motion``, ``baseline``, ``scale`` and ``intensity``.
+
+        Raises
+        ------
+        InputError
+            As `read_records`, and levels both in the table and in the case.
+        """
+        records, asked = read_records(case["motion"]), Intensity(**(case.get("intensity") or {}))
+        if asked.levels and any(one.level or one.scale != 1.0 for one in records):
+            raise InputError(case["motion"], "", "expected no scale and no level beside intensity.levels")
+        return cls(records, case["baseline"], case["scale"], asked, {} if loaded is None else loaded)
+
+    def draw(self, sample, seed):
+        """`SetRecord` of a sample by its number.
+
+        Notes
+        -----
+        Samples take the levels in turn. Those of one level go through all records in a random order before any comes
+        twice, so that any first samples of a design are as even over levels and records as they can be. The order
+        depends on ``seed``, the names of the records and the level's place.
+        """
+        levels = self.intensity.levels or (None,)
+        turn, place = divmod(int(sample), len(levels))
+        turn, within = divmod(turn, len(self.records))
+        digest = content_digest("records", seed, place, turn, [record.name for record in self.records])
+        raw = np.random.PCG64(int(digest, 16)).random_raw(len(self.records))
+        record = self.records[int(np.argsort(raw, kind="stable")[within])]
+        return record._replace(level=levels[place] or record.level)
+
+    def motion(self, record):
+        """`GroundMotion` of a record, at its level or with its scale, times that of the case."""
+        key = record.path, self.baseline
+        if key not in self.loaded:
+            self.loaded[key] = load_motion(record.path, baseline=self.baseline)
+        motion, factor = self.loaded[key], record.scale
+        if record.level is not None:
+            own = self.intensity.of(motion)
+            if own == 0.0:
+                raise InputError(record.path, "", "expected a motion along x, to be scaled to a level")
+            factor = record.level / own
+        return scaled(motion, factor * self.scale, record.path)
+
+    def strongest(self):
+        """Generator of every record's motion, at the highest level."""
+        (highest,) = self.intensity.levels[-1:] or (None,)
+        yield from (self.motion(one._replace(level=highest or one.level)) for one in self.records)

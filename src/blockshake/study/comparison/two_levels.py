@@ -1,0 +1,111 @@
+"""Mean of few runs of a costly model, helped by many of a cheap one: a control variate."""
+
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+import xarray as xr
+
+from blockshake.dynamics.system import Status
+from blockshake.statistics.intervals import CONFIDENCE, SURE_FROM
+
+CHEAP = "nscd-rigid"
+
+
+class TwoLevelMean(NamedTuple):
+    """Mean of a costly model's results.
+
+    Attributes
+    ----------
+    value, lower, upper : float
+        Mean with limits of 95 %, in the unit of the results.
+    coefficient : float
+        By which a deviation of the cheap model's mean is taken over [1].
+    correlation : float
+        Of the results of both models [1].
+    gain : float
+        Variance of the mean of the costly results alone, over that of the value [1].
+    """
+
+    value: float
+    lower: float
+    upper: float
+    coefficient: float
+    correlation: float
+    gain: float
+
+
+def two_level_mean(costly, cheap, many):
+    """`TwoLevelMean` of results.
+
+    Parameters
+    ----------
+    costly, cheap : float64 arrays, shape (n,)
+        Of both models for the same samples, at least 6.
+    many : float64 array, shape (N,)
+        Of the cheap model for these samples and others.
+
+    Returns
+    -------
+    TwoLevelMean
+        NaN where the results of either model do not vary, or are too few.
+
+    Notes
+    -----
+    Regression estimator of two-phase sampling (Cochran 1977, Sampling Techniques, section 12.6); with the best
+    coefficient, that of least squares, its variance is ``s^2 / n (1 - r^2 (1 - n / N))`` (also Peherstorfer,
+    Willcox and Gunzburger 2016, SIAM J. Sci. Comput. 38, for two models). The variance that is used is Cochran's
+    conditional one, which knows that the coefficient is estimated; the limits are Student's with n - 2 degrees of
+    freedom. The bias is of the order 1 / n.
+    """
+    size, nothing = len(costly), TwoLevelMean(*np.full(6, np.nan))
+    if size < SURE_FROM or np.ptp(costly) == 0.0 or np.ptp(cheap) == 0.0:
+        return nothing
+    centred, off = cheap - cheap.mean(), many.mean() - cheap.mean()
+    squares = centred @ centred
+    coefficient = centred @ costly / squares
+    rest = costly - costly.mean() - coefficient * centred
+    own, left = costly.var(ddof=1), rest @ rest / (size - 2)
+    variance = left * (1.0 / size + off**2 / squares) + max(own - left, 0.0) / len(many)
+    value = costly.mean() + coefficient * off
+    half = scipy.stats.t.ppf(0.5 + 0.5 * CONFIDENCE, size - 2) * np.sqrt(variance)
+    gain = own / size / variance if variance > 0.0 else np.inf
+    correlation = np.corrcoef(costly, cheap)[0, 1]
+    return TwoLevelMean(*map(float, (value, value - half, value + half, coefficient, correlation, gain)))
+
+
+def two_levels(ensembles):
+    """`two_level_mean` of the largest displacement, of each model with fewer samples than rigid NSCD.
+
+    Parameters
+    ----------
+    ensembles : dict of str to xarray.Dataset
+        By model, from `join_batches`: all samples.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of the largest displacement of any marker along x relative to the slab, by sample: ``mean_peak(model)`` of the
+        model alone, ``two_level_peak(model)`` and its ``_interval(bound, model)`` [m], ``coefficient``,
+        ``peak_correlation`` and ``variance_gain(model)`` [1]. NaN for other models, and where a sample did not
+        complete: one that fell has no largest displacement.
+    """
+    peaks = {
+        model: one["peak"].sel(frame="slab", drop=True).max("marker").where(one["status"] == Status.COMPLETED)
+        for model, one in ensembles.items()
+    }
+    rows = np.full((len(peaks), 7), np.nan)
+    for row, own in zip(rows, peaks.values(), strict=True):
+        many = peaks.get(CHEAP)
+        if many is None or own.sizes["sample"] >= many.sizes["sample"]:
+            continue
+        both = [one.sel(sample=own["sample"]).to_numpy() for one in (own, many)]
+        if np.isfinite(own).all() and np.isfinite(many).all():
+            row[:] = both[0].mean(), *two_level_mean(*both, many.to_numpy())
+    names = ("mean_peak", "two_level_peak", "coefficient", "peak_correlation", "variance_gain")
+    result = xr.Dataset(
+        {name: ("model", rows[:, place]) for name, place in zip(names, (0, 1, 4, 5, 6), strict=True)}
+    )
+    return result.assign(two_level_peak_interval=(("bound", "model"), rows[:, 2:4].T)).assign_coords(
+        bound=["lower", "upper"]
+    )

@@ -1,0 +1,267 @@
+"""Fragilities over an intensity from samples that are each shaken once, by a record as it is or scaled to a level."""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy.special import expit, gammaincinv, ndtr, ndtri
+
+from blockshake.dynamics.intensity import motion_figures
+from blockshake.dynamics.record_set import DrawnMotions
+from blockshake.dynamics.system import FALLEN
+from blockshake.geometry.reference_block import half_width
+from blockshake.geometry.structure import load_structure
+from blockshake.statistics.intervals import CONFIDENCE
+from blockshake.store import load_made
+from blockshake.study.ensembles.ensemble import describe
+from blockshake.study.ensembles.envelope import BOUNDS, counted_samples
+from blockshake.study.fragility.capacity import estimate_capacity
+from blockshake.study.fragility.fragility import ESTIMATES, POINTS
+
+_DRAWN = 2000  # of the parameters of a regression
+_STILL = 1e-4  # m, the noise of a marker: a sample that moves less tells nothing of a line
+_STEPS = 60  # of a bisection, and of Newton's method
+_FAR = (
+    20.0  # in the logarithm of the intensity, from the middle of the samples to where no level is looked for
+)
+_DESCRIBED = {
+    "intensity": "measure of the motion of the sample",
+    "fine_intensity": "measure of the motion",
+    "median": "intensity at which half of the samples do not pass",
+    "safe": "intensity at which 5 % of the samples do not pass",
+    "dispersion": "standard deviation of the logarithm of the intensity at which a sample does not pass",
+    "curve": "probability of not passing",
+    "demand": "largest displacement of a marker along x relative to the slab",
+    "peak_acceleration": "peak ground acceleration along x of the motion of the sample",
+    "fell": "1 where the sample collapsed, or still fell as the window ended",
+}
+_UNITS = {"dispersion": "1", "curve": "1", "demand": "m", "peak_acceleration": "m/s2", "fell": "1"}
+
+
+class Cloud(NamedTuple):
+    """Probability of not passing over the intensity, by regression; numbers, or arrays (n,) of drawn parameters.
+
+    Attributes
+    ----------
+    intercept, slope, deviation : float
+        Of the logarithm of the demand, over that of its limit, on the logarithm of the intensity.
+    fall_intercept, fall_slope : float
+        Of the logit of the probability of a fall on the same; minus infinity and 0 where nothing fell.
+    middle : float
+        Mean logarithm of the intensities.
+    """
+
+    intercept: float
+    slope: float
+    deviation: float
+    fall_intercept: float
+    fall_slope: float
+    middle: float
+
+    def probability(self, level):
+        """Probability of a fall or of a demand above its limit at an intensity, or intensities [1]."""
+        log = np.log(level)
+        exceeds = ndtr((self.intercept + self.slope * log) / self.deviation)
+        falls = expit(self.fall_intercept + self.fall_slope * log)
+        return falls + (1.0 - falls) * exceeds
+
+    def level(self, probability):
+        """Intensity with this probability; 0 or infinity where the probability stays above or below it."""
+        low, high = np.broadcast_arrays(self.middle - _FAR, self.middle + _FAR + 0.0 * self.slope)
+        for _ in range(_STEPS):
+            middle = 0.5 * (low + high)
+            below = self.probability(np.exp(middle)) < probability
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+        found = np.where(high >= self.middle + _FAR - 1e-6, np.inf, np.exp(high))
+        return np.where(low <= self.middle - _FAR + 1e-6, 0.0, found)
+
+    @property
+    def median(self):
+        """Intensity at which half do not pass."""
+        return self.level(0.5)
+
+    @property
+    def dispersion(self):
+        """Half the logarithm of the ratio of the intensities at 84 and 16 %: the deviation of a lognormal curve [1]."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            spread = 0.5 * (np.log(self.level(ndtr(1.0))) - np.log(self.level(ndtr(-1.0))))
+        return np.where(np.isnan(spread), np.inf, spread)
+
+
+def fit_cloud(intensity, demand, fell, limit, weight=1.0):
+    """`Cloud` of samples, and many whose parameters are drawn as the samples leave them open.
+
+    Parameters
+    ----------
+    intensity : float64 array, shape (n_samples,)
+        Above 0.
+    demand : float64 array, shape (n_samples,)
+        That of samples that fell, or stay within a tenth of a millimetre, is not used [m].
+    fell : bool array, shape (n_samples,)
+    limit : float
+        Demand that counts as not passing [m].
+    weight : float
+        Share of the samples that are independent of each other [1]: of samples that come m times, 1 / m.
+
+    Returns
+    -------
+    fitted, drawn : Cloud
+        Numbers, and arrays (2000,); NaN where fewer than three samples of different intensities move and stand.
+
+    Notes
+    -----
+    Jalayer and Cornell (2009), Earthquake Eng. Struct. Dyn. 38: least squares of the logarithms for samples that stand,
+    of constant deviation; a logistic regression for the falls as in Jalayer et al. (2017), Soil Dyn. Earthquake Eng.
+    The parameters of the least squares are drawn from their posterior with the prior 1 / variance, whose quantiles of
+    intercept and slope are Student's; those of the logistic regression from the normal distribution of their
+    information. The regression is Firth's (1993), which stays finite where one intensity parts falls from the others.
+    The draws are the same for all samples.
+    """
+    log, fell = np.log(intensity), np.asarray(fell, dtype=bool)
+    used = ~fell & (demand > _STILL)
+    x, y = log[used], np.log(demand[used] / limit)
+    size, middle = weight * len(x), float(np.mean(log)) if len(log) else np.nan
+    squares, freedom = weight * float(((x - x.mean()) ** 2).sum()) if len(x) else 0.0, size - 2.0
+    if freedom < 1.0 or squares == 0.0:
+        return Cloud(*np.full(6, np.nan)), Cloud(*np.full((6, _DRAWN), np.nan))
+    slope = float(weight * (x - x.mean()) @ y / squares)
+    deviation = float(np.sqrt(weight * ((y - y.mean() - slope * (x - x.mean())) ** 2).sum() / freedom))
+    bits = np.random.PCG64(1).random_raw(5 * _DRAWN).reshape(5, _DRAWN)
+    chances = ((bits >> np.uint64(11)) + 0.5) * 2.0**-53
+    scores = ndtri(chances[:4])
+    deviations = deviation * np.sqrt(0.5 * freedom / gammaincinv(0.5 * freedom, chances[4]))
+    slopes = slope + deviations * scores[0] / np.sqrt(squares)
+    means = y.mean() + deviations * scores[1] / np.sqrt(size)
+    if not fell.any():
+        falls, fallen = (-np.inf, 0.0), (np.full(_DRAWN, -np.inf), np.zeros(_DRAWN))
+    else:
+        falls, covariance = logistic(log, fell)
+        fallen = falls[:, None] + np.linalg.cholesky(covariance / weight) @ scores[2:]
+    fitted = Cloud(y.mean() - slope * x.mean(), slope, deviation, *falls, middle)
+    return fitted, Cloud(means - slopes * x.mean(), slopes, deviations, *fallen, middle)
+
+
+def logistic(x, event):
+    """Intercept and slope of the logit of an event's probability, and their covariance matrix.
+
+    Parameters
+    ----------
+    x : float64 array, shape (n,)
+    event : bool array, shape (n,)
+
+    Notes
+    -----
+    Firth (1993), Biometrika 80: the score with Jeffreys's prior, ``X' (y - p + h (1/2 - p))`` with the leverages ``h``.
+    """
+    design, answer = np.column_stack([np.ones_like(x), x - x.mean()]), np.zeros(2)
+    for _ in range(_STEPS):
+        chance = expit(design @ answer)
+        weight = chance * (1.0 - chance)
+        covariance = np.linalg.inv(design.T @ (weight[:, None] * design))
+        leverage = weight * np.einsum("ij,jk,ik->i", design, covariance, design)
+        step = covariance @ (design.T @ (event - chance + leverage * (0.5 - chance)))
+        step *= min(1.0, 5.0 / np.abs(design @ step).max())
+        answer = answer + step
+        if np.abs(step).max() < 1e-10:
+            break
+    shift = np.array([[1.0, -x.mean()], [0.0, 1.0]])
+    return shift @ answer, shift @ covariance @ shift.T
+
+
+def cloud_of_case(samples, case, seed, largest_drift):
+    """Intensity and demand of the samples of a case that draw motions, and both fragilities.
+
+    Parameters
+    ----------
+    samples : path
+        File from `sample_figures`.
+    case : dict
+        ``structure``, ``motion``, ``scale``, ``baseline`` and ``intensity`` of the configuration.
+    seed : int
+        Of the design.
+    largest_drift : float or None
+        Demand that counts as not passing [m]; `half_width` of the structure where it is None.
+
+    Returns
+    -------
+    xarray.Dataset
+        By counted ``sample``: ``record``, ``intensity``, ``peak_acceleration`` [m/s2], ``demand`` [m], ``fell``. By
+        ``fit``: ``median``, ``dispersion``, ``safe``, each with its ``_interval(fit, bound)``, and
+        ``curve(fit, fine_intensity)`` with its limits; NaN where the samples do not tell. ``regression`` is
+        `fit_cloud`; ``counts`` the lognormal curve of largest likelihood of passing and not passing, Eq. (11) of Baker
+        (2015), Earthquake Spectra 31. Attributes: ``measure``, ``period``, number of ``levels`` and of ``records``,
+        ``weight`` of a sample in the limits, ``largest_drift``, and ``slope`` and ``intercept`` of the `Cloud`.
+
+    Notes
+    -----
+    Passing or not at one intensity tells that a capacity lies above or below it. The likelihood of such bounds,
+    `fit_capacity`'s, is Baker's product of binomials. Samples that draw the same record at the same level count
+    together as one in all limits, since records differ by more than the sampled variables do.
+    """
+    counted = counted_samples(load_made(samples))
+    limit = largest_drift or half_width(load_structure(case["structure"]))
+    drawn = DrawnMotions.of(case)
+    records = [drawn.draw(sample, seed) for sample in counted["sample"].values]
+    motions = [drawn.motion(record) for record in records]
+    told = [case["scale"] * one.level if one.level else None for one in records]
+    intensity = np.array(
+        [one or drawn.intensity.of(motion) for one, motion in zip(told, motions, strict=True)]
+    )
+    demand = counted["peak"].sel(frame="slab", drop=True).max("marker").to_numpy()
+    fell = np.isin(counted["status"].values, FALLEN)
+    failed = fell | (demand > limit)
+    differ = len(np.unique(intensity)) > 1  # else no curve is told
+    fine = np.geomspace(intensity.min(), intensity.max(), POINTS) if differ else np.arange(1.0, POINTS + 1.0)
+    weight = len(set(records)) / len(records) if records else 1.0
+    cloud, likely = fit_cloud(intensity, demand, fell, limit, weight)
+    bounds = np.where(failed, 0.0, intensity), np.where(failed, intensity, np.inf)
+    fits = {
+        "regression": (cloud, likely, _tails),
+        "counts": estimate_capacity(*(bounds if differ else ([], [])), weight),
+    }
+    peaks = [motion_figures(motion)["peak_acceleration"] for motion in motions]
+    by_sample = {
+        "intensity": intensity,
+        "peak_acceleration": peaks,
+        "demand": demand,
+        "fell": fell.astype(int),
+    }
+    result = xr.Dataset(
+        {name: ("sample", values) for name, values in by_sample.items()},
+        {
+            "sample": counted["sample"],
+            "record": ("sample", [one.name for one in records], {"long_name": "motion of the sample"}),
+            "fit": list(fits),
+            "bound": list(BOUNDS),
+            "fine_intensity": fine,
+        },
+    )
+    for name, of in ESTIMATES.items():
+        dims = ("fine_intensity",) if name == "curve" else ()
+        values = [np.asarray(of(fitted, fine), dtype=float) for fitted, *_ in fits.values()]
+        limits = [limits_over(of(around, fine[:, None])) for _, around, limits_over in fits.values()]
+        result[name] = ("fit", *dims), np.stack(values)
+        result[f"{name}_interval"] = ("fit", "bound", *dims), np.stack(limits)
+    unit = "m/s" if drawn.intensity.measure == "pgv" else "m/s2"
+    described = {name: (words, _UNITS.get(name, unit)) for name, words in _DESCRIBED.items()}
+    described |= {f"{name}_interval": (f"limits of the {name}", described[name][1]) for name in ESTIMATES}
+    describe(result, described)
+    result.attrs = {
+        "title": "fragility over the intensity of drawn motions",
+        "measure": drawn.intensity.measure,
+        "period": drawn.intensity.period or 0.0,
+        "levels": len(drawn.intensity.levels),
+        "records": len({one.name for one in records}),
+        "weight": weight,
+        "slope": float(cloud.slope),
+        "intercept": float(cloud.intercept),
+        "largest_drift": float(limit),
+        "confidence": CONFIDENCE,
+    }
+    return result
+
+
+def _tails(values):
+    """Limits of drawn values along the last axis."""
+    tail = 0.5 - 0.5 * CONFIDENCE
+    return np.quantile(values, (tail, 1.0 - tail), axis=-1, method="closest_observation")
