@@ -167,9 +167,9 @@ def provenance(attributes):
     Parameters
     ----------
     attributes : dict
-        Of a `GroundMotion`; ``source`` alone is needed.
+        Of a `GroundMotion`; one without ``source`` is of arrays.
     """
-    words = attributes["source"]
+    words = attributes.get("source", "arrays")
     if attributes.get("format", "synthetic") != "synthetic":
         words += f" ({attributes['format']})"
     if attributes.get("assumed"):
