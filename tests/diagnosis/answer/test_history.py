@@ -1,0 +1,54 @@
+"""A campaign as a history: edges that wear from test to test are seen as a path, and sound or worn ones are silent."""
+
+import pytest
+from simulated_tests import cause_of, seen_tests
+
+from blockshake.diagnosis.answer.decide import decide
+
+MOTIONS = {
+    "first": ("alkion", 2.5), "second": ("basso-tirreno", 2.0), "third": ("alkion", 2.5), "fourth": ("alkion", 2.8),
+}  # fmt: skip
+WORN = {"first": 0.005, "second": 0.025, "third": 0.045, "fourth": 0.07}  # m, of the edges of all blocks
+
+
+def _seen(insets):
+    """Tests of two blocks whose edges lie further in by an amount of each test."""
+    return [
+        seen_tests("two-blocks", {name: motion}, cause_of("reduced-bearing", {}, {"inset": insets[name]}))[0]
+        for name, motion in MOTIONS.items()
+    ]
+
+
+@pytest.fixture(scope="module")
+def worn():
+    return decide(_seen(WORN)).decision
+
+
+def _of_edges(decision):
+    return next(one for one in decision.histories if one.parameter == "inset")
+
+
+def test_edges_that_wear_from_test_to_test_are_a_path(worn):
+    path = _of_edges(worn)
+    assert path.changes
+    assert path.tests == tuple(WORN)
+    for size, true in zip(path.sizes, WORN.values(), strict=True):
+        assert size.lower <= true <= size.upper
+    middles = [size.estimate for size in path.sizes]
+    assert middles == sorted(middles)
+
+
+def test_the_model_is_extended_by_the_size_of_the_last_test(worn):
+    cause = worn.parts[0].causes[0]
+    last = _of_edges(worn).sizes[-1]
+    assert cause.parameters["inset"] == last
+    members = sorted(member["inset"] for member in cause.members)
+    assert last.lower < members[len(members) // 2] < last.upper
+
+
+def test_edges_that_are_worn_alike_in_all_tests_have_no_path():
+    decision = decide(_seen(dict.fromkeys(MOTIONS, 0.06))).decision
+    assert [one.name for one in decision.causes] == ["reduced-bearing"]
+    assert not any(one.changes for one in decision.histories)
+    for size in _of_edges(decision).sizes:
+        assert size.lower <= 0.06 <= size.upper
