@@ -1,8 +1,9 @@
 """Whether an advised measurement splits a set as promised: made synthetically, from the truth of a case.
 
-``python hidden_effects/try_next_tests.py FOLDER`` makes the cases of `CASES` there, those that it has not yet, and decides
-on every case of the folder (a folder with ``campaign`` and ``truth``). Where the truth is in a set of several causes, each static test that is advised is made 1000 times: readings of the true
-cause with the noise of the test. The set is split where the true cause is left alone.
+``python hidden_effects/try_next_tests.py FOLDER`` makes the cases of `CASES` there, those that it has not yet, and
+decides on every case of the folder (a folder with ``campaign`` and ``truth``). Where the truth is in a set of several
+causes, each static test that is advised is made 1000 times: readings of the true cause with the noise of the test. The
+set is split where the true cause is left alone.
 """
 
 import sys
@@ -21,7 +22,7 @@ from blockshake.files import load_json
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
 
-# structure, effect and number of its cases, of sizes near the limits, where tests leave sets; fixed before any was decided
+# structure, effect and number of cases: of sizes near the limits, where tests leave sets; fixed before any was decided
 CASES = (
     ("two-blocks", "eccentricity", 5), ("three-blocks", "eccentricity", 3), ("two-blocks", "stopper-contact", 2),
     ("two-blocks", "joint-compliance", 3), ("two-blocks", "base-compliance", 2), ("two-blocks", "reduced-bearing", 2),
@@ -50,9 +51,7 @@ def made_cases(folder):
             }  # fmt: skip
             size = first.null + cause["size"] * (first.visible - first.null)
             cause["values"] = {first.name: size} | {one.name: one.null for one in others}
-            make_case(
-                seed, [effect], "small", case / "campaign", case / "truth", False, name, causes=[cause]
-            )
+            make_case(seed, [effect], "small", case / "campaign", case / "truth", False, name, causes=[cause])
 
 
 def tried(case):

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from blockshake.diagnosis.answer.history import EDGES, FRICTION
 from blockshake.diagnosis.answer.places import EVERYWHERE
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS, title_of
@@ -78,6 +79,24 @@ def cause_words(cause, place):
     """A `Cause` with its place in words, its sizes, and when it acts."""
     name = f"{cause.title}{f' ({place})' if place else ''}"
     return ", ".join(part for part in (name, sizes_of(cause), when_words(cause.when)) if part)
+
+
+def history_words(path):
+    """A `History` in a sentence: sizes by test where they change, or that one size is enough."""
+    name, where = path.quantity, place_words(path.place)
+    if name in (EDGES, FRICTION):
+        subject = f"the {name} of {where or 'all joints'}"
+    else:
+        subject = f"{name_of(name)}{f' ({where})' if where else ''}"
+    if not path.changes:
+        return f"{subject}: one {path.parameter} in all tests is enough"
+    sizes = [
+        f"{estimate_words('', size)} in {test}" for test, size in zip(path.tests, path.sizes, strict=True)
+    ]
+    return (
+        f"{subject} changed from test to test, which is {times_words(path.gain)} likelier than one {path.parameter}: "
+        f"{listed(sizes)}"
+    )
 
 
 def when_words(when):

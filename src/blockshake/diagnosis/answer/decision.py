@@ -123,8 +123,10 @@ class History(Strict):
     ----------
     quantity : str
         Name of the cause, ``edges`` or ``friction``.
-    parameter, place : str
-        Name of the size; where, in words.
+    parameter : str
+        Name of the size.
+    place : dict
+        As of `Cause`; empty of all joints together.
     tests : tuple of str
     sizes : tuple of Estimate
         Of each test alone, under one prior.
@@ -136,7 +138,7 @@ class History(Strict):
 
     quantity: str
     parameter: str
-    place: str
+    place: dict[str, JsonValue]
     tests: tuple[str, ...]
     sizes: tuple[Estimate, ...]
     gain: Finite

@@ -20,7 +20,6 @@ from blockshake.diagnosis.outside.free_force import explain_free_force
 from blockshake.diagnosis.outside.loose_weight import explain_loose_weight
 from blockshake.diagnosis.outside.push import explain_push
 from blockshake.diagnosis.outside.spring_once import explain_spring_once
-from blockshake.diagnosis.outside.unmodelled_mass import explain_unmodelled_mass
 from blockshake.effects.registry import EFFECTS
 from blockshake.effects.stopper_contact import EFFECT as STOPPER_CONTACT
 from blockshake.forces.seen.point_rows import point_rows
@@ -121,7 +120,6 @@ def _from_outside(likelihood, tests, points):
         yield from explain_following(likelihood, point, weight)
         for search in (explain_push, explain_blow, explain_spring_once):
             yield search(likelihood, point, weight)
-        yield explain_unmodelled_mass(likelihood, tests, point)
     # the height hardly matters to a force of any history
     highest = {point.body: point for point in points}
     yield from (explain_free_force(likelihood, point) for point in highest.values())

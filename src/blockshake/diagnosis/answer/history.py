@@ -1,4 +1,4 @@
-"""A campaign as a history: sizes by test, and whether they change from test to test, as edges wear and friction polishes.
+"""A campaign as a history: sizes by test, and whether they change from test to test, as edges that wear do.
 
 Beside one value for all tests stands a random walk from test to test, since damage stays.
 """
@@ -52,7 +52,7 @@ def histories(evidence, beside, first, seen):
 
 
 def of_last_test(cause, history):
-    """A `Cause` as large as in the last test of its own `History`: what acts is now that large, and in tests to come."""
+    """A `Cause` as large as in the last test of its own `History`: what acts in tests to come is that large."""
     name, present = next(iter(cause.parameters.items()))
     last, known = history.sizes[-1], None if cause.outside else EFFECTS[cause.name].parameters[0]
     wider = (last.upper - last.lower) / max(present.upper - present.lower, 1e-300)
@@ -78,11 +78,11 @@ def _own(evidence, first, seen, more):
     size = float(fit.contrast @ fit.mean)
     if not fit.covariance.any() or size == 0.0:
         return None
+    place = place_of(first.cause, first.place, seen)
     if first.cause in FORMS:
         form = FORMS[first.cause]
         if form.rows is None:
             return None
-        place = place_of(first.cause, first.place, seen)
         columns = [form.rows(test, place, fit.values) for test in evidence.tests]
         name, unit, read = form.size, form.unit, np.asarray
     else:
@@ -94,7 +94,7 @@ def _own(evidence, first, seen, more):
             return EFFECTS[first.cause].reads(fit.values, np.asarray(amplitudes), 0.0)[name]
 
     found = _weighed(evidence, columns, float(fit.scales[0]))
-    return found and _history(first.cause, name, first.place, unit, found, needed_of(first.cause) + more, read)
+    return found and _history(first.cause, name, place, unit, found, needed_of(first.cause) + more, read)
 
 
 def _of_sound_joints(evidence, quantity, name, unit, scale, by_place, more):
@@ -104,8 +104,11 @@ def _of_sound_joints(evidence, quantity, name, unit, scale, by_place, more):
     if not found:
         return None
     best = max(found, key=lambda place: found[place][0])
+    place = {} if best == EVERYWHERE else place_of(_OF_EDGES[1], best, evidence.tests[0].seen)
     gain = float(mean_evidence([one[0] for one in found.values()]))
-    return _history(quantity, name, best, unit, (gain, *found[best][1:]), needed_of(quantity) + more, np.asarray)
+    return _history(
+        quantity, name, place, unit, (gain, *found[best][1:]), needed_of(quantity) + more, np.asarray
+    )
 
 
 def _history(quantity, name, place, unit, found, needed, read):
@@ -148,8 +151,7 @@ def _weighed(evidence, columns, scale):
         logs.append(likelihood.log_evidence)
         constant.append(likelihood.amplitudes(same, [scale, *scatter]).gain)
         gains = [
-            likelihood.amplitudes(walks, [scale, *scatter, *(share * scale * steps)]).gain
-            for share in _STEPS
+            likelihood.amplitudes(walks, [scale, *scatter, *(share * scale * steps)]).gain for share in _STEPS
         ]
         path.append(mean_evidence(gains))
         alone.append(likelihood.amplitudes(single, np.full(len(acting), scale)))

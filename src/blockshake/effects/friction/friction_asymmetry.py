@@ -1,4 +1,4 @@
-"""An effect that is not in the registry, as docs/theory/effects.md says: friction is larger for slip to one side."""
+"""Friction is larger for slip to one side than to the other, as of faces that were cut or worn one way."""
 
 import numpy as np
 
@@ -7,11 +7,14 @@ from blockshake.effects.places import nowhere
 from blockshake.forces.seen.wrench_histories import friction_against_slip
 
 _SCALE = 0.3
+_MOST = 0.99
 
 
 def _act(experiment, values, place):
     changed = {
-        f"friction.{'.'.join(one.pair)}.asymmetry": one.asymmetry + values["asymmetry"]
+        f"friction.{'.'.join(one.pair)}.asymmetry": float(
+            np.clip(one.asymmetry + values["asymmetry"], -_MOST, _MOST)
+        )
         for one in experiment.structure.file.friction
     }
     return experiment.with_parameters(**changed)
@@ -26,14 +29,14 @@ def _columns(seen, place):
 
 
 EFFECT = Effect(
-    name="one-way-friction",
+    name="friction-asymmetry",
     title="friction of two sides",
     acts="contact",
     equation="mu (1 + a) for slip of the upper body towards +x, mu (1 - a) towards -x",
-    source="Coulomb",
+    source="Coulomb, for each direction",
     parameters=(EffectParameter("asymmetry", "1", "of the coefficient", 0.0, -0.5, 0.5, 0.3),),
     confused_with=("eccentricity",),
-    told_apart_by="a test with the motion reversed",
+    told_apart_by="a test with the motion reversed; a jack that pushes the block to either side",
     places=nowhere,
     act=_act,
     columns=_columns,
