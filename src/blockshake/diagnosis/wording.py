@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.diagnosis.answer.history import EDGES, FRICTION
+from blockshake.diagnosis.answer.history import EDGES, FRICTION, MIDDLE
 from blockshake.diagnosis.answer.places import EVERYWHERE
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS, title_of
@@ -84,7 +84,7 @@ def cause_words(cause, place):
 def history_words(path):
     """A `History` in a sentence: sizes by test where they change, or that one size is enough."""
     name, where = path.quantity, place_words(path.place)
-    if name in (EDGES, FRICTION):
+    if name in (EDGES, MIDDLE, FRICTION):
         subject = f"the {name} of {where or 'all joints'}"
     else:
         subject = f"{name_of(name)}{f' ({where})' if where else ''}"

@@ -52,3 +52,14 @@ def test_edges_that_are_worn_alike_in_all_tests_have_no_path():
     assert not any(one.changes for one in decision.histories)
     for size in _of_edges(decision).sizes:
         assert size.lower <= 0.06 <= size.upper
+
+
+def test_blocks_that_shift_from_test_to_test_are_a_path():
+    shifts = dict(zip(MOTIONS, (0.0, 0.012, 0.024, 0.036), strict=True))  # m, of the upper block
+    places = {name: [[0.0] * 3, [0.0] * 3, [shift, 0.0, 0.0]] for name, shift in shifts.items()}
+    decision = decide(seen_tests("two-blocks", MOTIONS, places=places)).decision
+    (path,) = [one for one in decision.histories if one.changes]
+    # the mass centre of the upper block, or half as far the other way the middle of the joint below both blocks
+    share = {"eccentricity": 1.0, "middle": -0.5}[path.quantity]
+    for size, shift in zip(path.sizes, shifts.values(), strict=True):
+        assert size.lower <= share * shift <= size.upper

@@ -117,12 +117,12 @@ class Part(Strict):
 
 
 class History(Strict):
-    """A size by test, in the order of the campaign: of a cause, of the edges or of the friction of sound joints.
+    """A size by test, in the order of the campaign: of a cause, or of sound joints.
 
     Attributes
     ----------
     quantity : str
-        Name of the cause, ``edges`` or ``friction``.
+        Name of the cause, or ``edges``, ``middle`` or ``friction``.
     parameter : str
         Name of the size.
     place : dict

@@ -14,16 +14,17 @@ from blockshake.diagnosis.evidence.explanation import mean_evidence
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS
 
-EDGES, FRICTION = "edges", "friction"
+EDGES, MIDDLE, FRICTION = "edges", "middle", "friction"
+# of sound joints: name and unit of the size, and the standard deviation of its prior (of friction: of the coefficient)
+_SOUND = {EDGES: ("inset", "m", 0.05), MIDDLE: ("shift", "m", 0.02), FRICTION: ("change", "1", 0.3)}
 _OF_EDGES = ("reduced-bearing", "changed-edge")  # causes whose own path is that of the edges
-_INSET, _SHARE = 0.05, 0.3  # m; of the coefficient: standard deviations of the priors
 _STEPS = (0.1, 0.3, 1.0)  # of the prior's deviation, from test to test
 _SCATTER = 0.02  # of it, from test to test without damage: blocks are set up anew
 _SIGMAS = 1.645  # of a Gaussian, within which nine tenths lie
 
 
 def histories(evidence, beside, first, seen):
-    """Sizes by test of the first cause, of the edges and of the friction.
+    """Sizes by test of the first cause, and of the edges, the middle and the friction of sound joints.
 
     Parameters
     ----------
@@ -43,12 +44,13 @@ def histories(evidence, beside, first, seen):
         return ()
     more = needed_beside(False, first.gain) if first and (first.cause, first.place) in evidence.keys else 0.0
     own = _own(evidence, first, seen, more) if more else None
-    found = [own]
-    rest = beside or evidence
-    if own is None or first.cause not in _OF_EDGES:
-        found.append(_of_sound_joints(rest, EDGES, "inset", "m", _INSET, _insets(rest.tests), more))
-    found.append(_of_sound_joints(rest, FRICTION, "change", "1", _SHARE, _frictions(rest.tests), more))
-    return tuple(one for one in found if one)
+    of_edges = own is not None and first.cause in _OF_EDGES
+    others = (quantity for quantity in _SOUND if not (of_edges and quantity == EDGES))
+    sound = [_of_sound_joints(beside or evidence, quantity, more) for quantity in others]
+    if beside:  # a walk that alone explains more than the cause does takes the cause's place
+        alone = {quantity: _of_sound_joints(evidence, quantity, 0.0, first.gain) for quantity in _SOUND}
+        sound = [alone[one.quantity] or one for one in sound if one]
+    return tuple(one for one in (own, *sound) if one)
 
 
 def of_last_test(cause, history):
@@ -97,22 +99,27 @@ def _own(evidence, first, seen, more):
     return found and _history(first.cause, name, place, unit, found, needed_of(first.cause) + more, read)
 
 
-def _of_sound_joints(evidence, quantity, name, unit, scale, by_place, more):
-    """`History` of a size that sound joints have too, where it changes most; its gain is averaged over the places."""
+def _of_sound_joints(evidence, quantity, more, rival=None):
+    """`History` of a size that sound joints have too, where it changes most; its gain is averaged over the places.
+
+    With the gain of a ``rival`` over nothing it is None but where the size changes and explains more than the rival.
+    """
+    name, unit, scale = _SOUND[quantity]
+    by_place = _columns(evidence.tests, quantity)
     found = {place: _weighed(evidence, columns, scale) for place, columns in by_place.items()}
     found = {place: one for place, one in found.items() if one}
     if not found:
         return None
     best = max(found, key=lambda place: found[place][0])
     place = {} if best == EVERYWHERE else place_of(_OF_EDGES[1], best, evidence.tests[0].seen)
-    gain = float(mean_evidence([one[0] for one in found.values()]))
-    return _history(
-        quantity, name, place, unit, (gain, *found[best][1:]), needed_of(quantity) + more, np.asarray
-    )
+    gain, total = (float(mean_evidence([one[row] for one in found.values()])) for row in (0, 1))
+    path = (gain, total, *found[best][2:])
+    made = _history(quantity, name, place, unit, path, needed_of(quantity) + more, np.asarray)
+    return made if rival is None or (made.changes and total > rival) else None
 
 
 def _history(quantity, name, place, unit, found, needed, read):
-    gain, tests, means, deviations = found
+    gain, _, tests, means, deviations = found
     reach = _SIGMAS * np.hypot(deviations, FORM * means)
     sizes = np.sort([read(means - reach), read(means), read(means + reach)], axis=0)
     return History(
@@ -127,7 +134,7 @@ def _history(quantity, name, place, unit, found, needed, read):
 
 
 def _weighed(evidence, columns, scale):
-    """Gain of a path over one value, names of the tests, and the amplitudes of each test alone with their deviations.
+    """Gain of a path over one value and over nothing, names of the tests, amplitudes of each test and their deviations.
 
     ``columns`` are by test, (n_rows,) each, per unit of the amplitude. Amplitudes of single tests have the prior of the
     cause each, and share the nuisances. None where fewer than two tests have the column.
@@ -159,30 +166,24 @@ def _weighed(evidence, columns, scale):
     gain = float(logsumexp(logs + path) - logsumexp(logs + np.array(constant)))
     free = alone[int(np.argmax(logs + path))]
     names = tuple(evidence.tests[number].seen.name for number in acting)
-    return gain, names, free.mean, np.sqrt(np.diag(free.covariance))
+    total = float(logsumexp(logs + path) - logsumexp(logs))
+    return gain, total, names, free.mean, np.sqrt(np.diag(free.covariance))
 
 
-def _insets(tests):
-    """Rows of edges 1 m further in by joint, and of all joints together."""
-    faces = sorted({face for test in tests for face, tangent in test.hinges if tangent == 0})
-    columns = {tests[0].seen.faces[face].name: [_inset(test, [face]) for test in tests] for face in faces}
-    return {EVERYWHERE: [_inset(test, faces) for test in tests], **(columns if len(columns) > 1 else {})}
-
-
-def _inset(test, faces):
-    none = np.zeros(len(test.rows.value))
-    return sum((test.hinges[face, 0].inward for face in faces if (face, 0) in test.hinges), none)
-
-
-def _frictions(tests):
-    """Rows of a coefficient of friction twice as large, of all joints together."""
-    faces = tests[0].seen.faces
-    return {
-        EVERYWHERE: [
-            sum(
-                (faces[face].friction * slide.friction for face, slide in test.slides.items()),
-                np.zeros(len(test.rows.value)),
-            )
-            for test in tests
-        ]
+def _columns(tests, quantity):
+    """Rows by joint and test: of edges 1 m further in, or 1 m to one side, or of friction twice as large."""
+    by_face = {
+        face.name: [_of_face(test, index, face, quantity) for test in tests]
+        for index, face in enumerate(tests[0].seen.faces)
     }
+    together = {EVERYWHERE: [sum(own) for own in zip(*by_face.values(), strict=True)]}
+    return {EDGES: together | by_face, MIDDLE: by_face, FRICTION: together}[quantity]
+
+
+def _of_face(test, index, face, quantity):
+    hinge, slide = test.hinges.get((index, 0)), test.slides.get(index)
+    if quantity == FRICTION and slide:
+        return face.friction * slide.friction
+    if quantity != FRICTION and hinge:
+        return hinge.inward if quantity == EDGES else hinge.along
+    return np.zeros(len(test.rows.value))

@@ -103,7 +103,6 @@ def _items(diagnosed):
 
 def next_tests_table(verdict):
     """Table of the measurements that would split the sets; an empty list without any."""
-    """The ranked measurements that would split what the tests do not tell apart."""
     rows = [
         (
             sentence_case(one.test)[:-1],

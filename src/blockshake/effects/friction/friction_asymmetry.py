@@ -6,15 +6,12 @@ from blockshake.effects.effect import Columns, Effect, EffectParameter
 from blockshake.effects.places import nowhere
 from blockshake.forces.seen.wrench_histories import friction_against_slip
 
-_SCALE = 0.3
-_MOST = 0.99
+_SCALE, _MOST = 0.3, 0.99
 
 
 def _act(experiment, values, place):
     changed = {
-        f"friction.{'.'.join(one.pair)}.asymmetry": float(
-            np.clip(one.asymmetry + values["asymmetry"], -_MOST, _MOST)
-        )
+        f"friction.{'.'.join(one.pair)}.asymmetry": one.asymmetry + values["asymmetry"]
         for one in experiment.structure.file.friction
     }
     return experiment.with_parameters(**changed)
@@ -40,5 +37,5 @@ EFFECT = Effect(
     places=nowhere,
     act=_act,
     columns=_columns,
-    reads=lambda values, size, between: {"asymmetry": size},
+    reads=lambda values, size, between: {"asymmetry": np.clip(size, -_MOST, _MOST)},
 )
