@@ -90,12 +90,11 @@ def history_words(path):
         subject = f"{name_of(name)}{f' ({where})' if where else ''}"
     if not path.changes:
         return f"{subject}: one {path.parameter} in all tests is enough"
-    sizes = [
-        f"{estimate_words('', size)} in {test}" for test, size in zip(path.tests, path.sizes, strict=True)
-    ]
+    by_test = zip(path.tests, path.sizes, strict=True)
+    sizes = [f"{estimate_words('', size)} in {test}" for test, size in by_test]
     return (
         f"{subject} changed from test to test, which is {times_words(path.gain)} likelier than one {path.parameter}: "
-        f"{listed(sizes)}"
+        f"{listed(sizes)}{f'; alone this explains more than {name_of(path.beats)}' if path.beats else ''}"
     )
 
 

@@ -10,7 +10,7 @@ from blockshake.effects.places import blocks
 from blockshake.forces.seen.wrench_histories import force_at
 
 _SCALE = 0.2  # of the block's mass
-_HEIGHTS = (0.0, 0.42)  # of what is added or lacks, above the mass centre, over the block's height
+HEIGHTS = (0.0, 0.42)  # of what is added or lacks, above the mass centre, over the block's height
 
 
 def _act(experiment, values, place):
@@ -18,9 +18,8 @@ def _act(experiment, values, place):
     share = values["excess"]
     if share == 0.0:
         return experiment
-    structure = experiment.structure
-    index = structure.body_names.index(place["body"])
-    file, body = structure.file, structure.file.bodies[index]
+    structure, file = experiment.structure, experiment.structure.file
+    body = file.bodies[structure.body_names.index(place["body"])]
     tall = float(np.ptp(structure.solids[body.shape].vertices[:, 2]))
     raised = place.get("height", 0.0) * tall * share / (1.0 + share)
     density = body.density or file.materials[body.material].density
@@ -55,7 +54,7 @@ EFFECT = Effect(
     confused_with=("eccentricity",),
     told_apart_by="weighing the block",
     places=blocks,
-    seen_at=lambda structure: [{**place, "height": height} for place in blocks(structure) for height in _HEIGHTS],
+    seen_at=lambda structure: [{**place, "height": height} for place in blocks(structure) for height in HEIGHTS],
     act=_act,
     columns=_columns,
     reads=lambda values, size, between: {"excess": np.maximum(size, 0.0)},

@@ -70,9 +70,8 @@ _MARKER_OFFSET = Effect(
 
 def _sensor_drift(experiment, values, place):
     """The zero of one marker creeps along x."""
-    creeps, name = experiment.instruments.marker_creep, place["marker"]
-    x, y, z = creeps.get(name, (0.0, 0.0, 0.0))
-    return experiment.with_instruments(marker_creep={**creeps, name: (x + values["rate"], y, z)})
+    creeps = experiment.instruments.marker_creep
+    return experiment.with_instruments(marker_creep={**creeps, place["marker"]: (values["rate"], 0.0, 0.0)})
 
 
 _SENSOR_DRIFT = Effect(

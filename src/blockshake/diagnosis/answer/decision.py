@@ -134,6 +134,8 @@ class History(Strict):
         Logarithm of the evidence of sizes that walk from test to test over that of one size for all.
     changes : bool
         It is more than a chance.
+    beats : str
+        Name of a cause of which these sizes, without it, explain more than it does; else empty.
     """
 
     quantity: str
@@ -143,6 +145,7 @@ class History(Strict):
     sizes: tuple[Estimate, ...]
     gain: Finite
     changes: bool
+    beats: str = ""
 
 
 class Decision(Strict):

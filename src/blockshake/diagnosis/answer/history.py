@@ -1,7 +1,4 @@
-"""A campaign as a history: sizes by test, and whether they change from test to test, as edges that wear do.
-
-Beside one value for all tests stands a random walk from test to test, since damage stays.
-"""
+"""A campaign as a history: sizes by test, and whether they change from test to test, as edges that wear do."""
 
 import numpy as np
 from scipy.special import logsumexp
@@ -9,7 +6,7 @@ from scipy.special import logsumexp
 from blockshake.diagnosis.answer.answer import needed_beside, needed_of
 from blockshake.diagnosis.answer.decision import Estimate, History
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_of
-from blockshake.diagnosis.answer.size import FORM
+from blockshake.diagnosis.answer.size import FORM, NINE_TENTHS, read_sizes, units_of
 from blockshake.diagnosis.evidence.explanation import mean_evidence
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS
@@ -18,9 +15,8 @@ EDGES, MIDDLE, FRICTION = "edges", "middle", "friction"
 # of sound joints: name and unit of the size, and the standard deviation of its prior (of friction: of the coefficient)
 _SOUND = {EDGES: ("inset", "m", 0.05), MIDDLE: ("shift", "m", 0.02), FRICTION: ("change", "1", 0.3)}
 _OF_EDGES = ("reduced-bearing", "changed-edge")  # causes whose own path is that of the edges
-_STEPS = (0.1, 0.3, 1.0)  # of the prior's deviation, from test to test
+_STEPS = (0.1, 0.3, 1.0)  # of the prior's deviation, from test to test: of a walk, since damage stays
 _SCATTER = 0.02  # of it, from test to test without damage: blocks are set up anew
-_SIGMAS = 1.645  # of a Gaussian, within which nine tenths lie
 
 
 def histories(evidence, beside, first, seen):
@@ -48,7 +44,7 @@ def histories(evidence, beside, first, seen):
     others = (quantity for quantity in _SOUND if not (of_edges and quantity == EDGES))
     sound = [_of_sound_joints(beside or evidence, quantity, more) for quantity in others]
     if beside:  # a walk that alone explains more than the cause does takes the cause's place
-        alone = {quantity: _of_sound_joints(evidence, quantity, 0.0, first.gain) for quantity in _SOUND}
+        alone = {quantity: _of_sound_joints(evidence, quantity, 0.0, first) for quantity in _SOUND}
         sound = [alone[one.quantity] or one for one in sound if one]
     return tuple(one for one in (own, *sound) if one)
 
@@ -75,34 +71,28 @@ def of_last_test(cause, history):
 
 def _own(evidence, first, seen, more):
     """`History` of a cause at its best place; None where it has no amplitude or does not act in all tests."""
-    key = first.cause, first.place
-    fit = evidence.best(key).best
-    size = float(fit.contrast @ fit.mean)
-    if not fit.covariance.any() or size == 0.0:
+    fit, place = evidence.best((first.cause, first.place)).best, place_of(first.cause, first.place, seen)
+    size, form = float(fit.contrast @ fit.mean), FORMS.get(first.cause)
+    if not fit.covariance.any() or size == 0.0 or (form and form.rows is None):
         return None
-    place = place_of(first.cause, first.place, seen)
-    if first.cause in FORMS:
-        form = FORMS[first.cause]
-        if form.rows is None:
-            return None
+    if form:
         columns = [form.rows(test, place, fit.values) for test in evidence.tests]
-        name, unit, read = form.size, form.unit, np.asarray
     else:
-        parameter = EFFECTS[first.cause].parameters[0]
-        name, unit = parameter.name, parameter.unit
         columns = [rows @ fit.mean / size for rows in fit.columns]
-
-        def read(amplitudes):
-            return EFFECTS[first.cause].reads(fit.values, np.asarray(amplitudes), 0.0)[name]
-
+    name, unit = next(iter(units_of(first.cause).items()))
     found = _weighed(evidence, columns, float(fit.scales[0]))
-    return found and _history(first.cause, name, place, unit, found, needed_of(first.cause) + more, read)
+    needed = needed_of(first.cause) + more
+
+    def read(amplitudes):
+        return read_sizes(first.cause, fit.values, amplitudes, 0.0)[name]
+
+    return found and _history(first.cause, name, place, unit, found, needed, read)
 
 
 def _of_sound_joints(evidence, quantity, more, rival=None):
     """`History` of a size that sound joints have too, where it changes most; its gain is averaged over the places.
 
-    With the gain of a ``rival`` over nothing it is None but where the size changes and explains more than the rival.
+    With a `Rival` it is None but where the size changes and explains more than the rival.
     """
     name, unit, scale = _SOUND[quantity]
     by_place = _columns(evidence.tests, quantity)
@@ -115,12 +105,14 @@ def _of_sound_joints(evidence, quantity, more, rival=None):
     gain, total = (float(mean_evidence([one[row] for one in found.values()])) for row in (0, 1))
     path = (gain, total, *found[best][2:])
     made = _history(quantity, name, place, unit, path, needed_of(quantity) + more, np.asarray)
-    return made if rival is None or (made.changes and total > rival) else None
+    if rival is None:
+        return made
+    return made.model_copy(update={"beats": rival.cause}) if made.changes and total > rival.gain else None
 
 
 def _history(quantity, name, place, unit, found, needed, read):
     gain, _, tests, means, deviations = found
-    reach = _SIGMAS * np.hypot(deviations, FORM * means)
+    reach = NINE_TENTHS * np.hypot(deviations, FORM * means)
     sizes = np.sort([read(means - reach), read(means), read(means + reach)], axis=0)
     return History(
         quantity=quantity,

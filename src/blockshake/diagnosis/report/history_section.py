@@ -7,8 +7,6 @@ from blockshake.pages.blocks import Figure, Items, Section, Text
 from blockshake.pages.drawing import BLUE, GREY, new_figure, svg_of
 from blockshake.pages.wording import sentence_case
 
-_APART = 0.5  # of the distance of two tests, beyond the first and the last one
-
 
 def history_section(diagnosed):
     """Sizes of what acts, of the edges and of the friction by test; None where fewer than two tests tell any."""
@@ -18,8 +16,8 @@ def history_section(diagnosed):
     blocks = (
         Text(
             "A campaign is a history: edges wear, friction polishes. Each size below is that of one test alone, with "
-            "its interval of 90 %. Beside one size for all tests stands a walk from test to test. Where the walk is "
-            "likelier than chance makes it, the sizes of this report, and the extended model, are of the last test."
+            "its interval of 90 %. Where a walk from test to test is likelier than one size for all by more than "
+            "chance, the size of what acts, and the extended model, are of the last test."
         ),
         Items(tuple(sentence_case(history_words(path)) for path in paths)),
         Figure(
@@ -44,7 +42,7 @@ def plot_histories(paths):
             color=BLUE if path.changes else GREY, marker="o", markersize=4.0, capsize=2.0,
         )  # fmt: skip
         axes.set_xticks(range(len(path.tests)), path.tests)
-        axes.set_xlim(-_APART, len(path.tests) - 1.0 + _APART)
+        axes.margins(x=0.2)
         axes.set_ylabel(f"{path.parameter} [{unit}]")
         axes.set_title(
             sentence_case(history_words(path).partition(" changed from")[0].partition(":")[0])[:-1]

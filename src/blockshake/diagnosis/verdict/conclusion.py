@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.diagnosis.answer.decision import Estimate
+from blockshake.diagnosis.answer.size import NINE_TENTHS
 from blockshake.diagnosis.verdict.ladder import rung
 from blockshake.diagnosis.verdict.verdict import MeasuredGain, Misfit, Outside, Verdict
 from blockshake.diagnosis.wording import history_words
@@ -12,7 +13,6 @@ from blockshake.effects.registry import EFFECTS, title_of
 from blockshake.parity.kinds.registry import KINDS
 
 _WHERE = ("joint", "body")
-_SIGMAS = 1.645  # of a Gaussian, within which nine tenths lie
 _FORM = 0.05  # share of a fault's size by which it may vary with the reading, as that of a real sensor does
 
 
@@ -160,7 +160,7 @@ def _estimates(finding, location):
     size = effect.parameters[0]
     component = component if len(finding.estimate) == 3 else 0
     estimate = float(finding.estimate[component])
-    reach = _SIGMAS * float(np.hypot(finding.standard_error[component], _FORM * estimate))
+    reach = NINE_TENTHS * float(np.hypot(finding.standard_error[component], _FORM * estimate))
     return {
         size.name: Estimate(estimate=estimate, lower=estimate - reach, upper=estimate + reach, unit=size.unit)
     }

@@ -6,7 +6,7 @@ from blockshake.effects.effect import Columns, Effect, EffectParameter
 from blockshake.effects.places import nowhere
 from blockshake.forces.seen.wrench_histories import friction_against_slip
 
-_SCALE, _MOST = 0.3, 0.99
+_SCALE, _LARGEST = 0.3, 0.99
 
 
 def _act(experiment, values, place):
@@ -37,5 +37,5 @@ EFFECT = Effect(
     places=nowhere,
     act=_act,
     columns=_columns,
-    reads=lambda values, size, between: {"asymmetry": np.clip(size, -_MOST, _MOST)},
+    reads=lambda values, size, between: {"asymmetry": np.clip(size, -_LARGEST, _LARGEST)},
 )

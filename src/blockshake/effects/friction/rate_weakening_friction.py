@@ -26,16 +26,10 @@ def with_drop(experiment, values, along):
 
 def drop_columns(seen, history, scales):
     """`Columns` of the friction that all joints lose, by ``history`` (n_times, n_joints) over each of some scales."""
-    full = np.stack(
-        [
-            face.friction * seen.rows.along(friction_against_slip(seen, index))
-            for index, face in enumerate(seen.faces)
-        ],
-        axis=1,
-    )
+    full = [f.friction * seen.rows.along(friction_against_slip(seen, i)) for i, f in enumerate(seen.faces)]
     drops = (1.0 - np.exp(-history[seen.rows.instant] / scale) for scale in scales)
     return [
-        Columns({"scale": scale}, -(full * drop).sum(axis=1)[:, None], (_SCALE,), True)
+        Columns({"scale": scale}, -(np.stack(full, axis=1) * drop).sum(axis=1)[:, None], (_SCALE,), True)
         for scale, drop in zip(scales, drops, strict=True)
     ]
 

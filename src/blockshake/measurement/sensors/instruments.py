@@ -59,9 +59,7 @@ class Instruments(Sensors):
         {}, description="by marker: where it is less where it is said to be, body frame [m]"
     )
     marker_creep: dict[str, Vector] = Field({}, description="by marker: drift of its zero [m/s]")
-    marker_range: dict[str, Positive] = Field(
-        {}, description="by marker: largest displacement that it reads along an axis [m]"
-    )
+    marker_range: dict[str, Positive] = Field({}, description="by marker: its largest reading [m]")
     channel_gain: dict[str, Finite] = Field({}, description="by accelerometer channel [1]")
     marker_dropouts: ProperFraction = Field(
         0.0, description="share of the marker readings that are lost, in bursts [1]"
