@@ -105,7 +105,13 @@ def perfect():
 
 
 # effects that joined the registry after the cases were sealed: the next plan has them
-UNSCORED = ("slip-weakening-friction", "friction-asymmetry", "block-mass", "sensor-drift", "sensor-saturation")
+UNSCORED = (
+    "slip-weakening-friction",
+    "friction-asymmetry",
+    "block-mass",
+    "sensor-drift",
+    "sensor-saturation",
+)
 
 
 def test_the_plan_is_what_was_asked_for():
