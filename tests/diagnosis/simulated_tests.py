@@ -11,7 +11,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Sensors
 from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.sensors.instruments import Instruments, observe
-from blockshake.simulation.simulate import placed, simulate
+from blockshake.simulation.simulate import simulate
 
 STRUCTURES = PACKAGE.parents[1] / "hidden_effects" / "structures"
 DURATION = 6.0  # s
@@ -22,16 +22,16 @@ def cause_of(name, place, values, when=None):
     return made_up_cause(name, place, members=(values,), when=when or {})
 
 
-def seen_tests(structure, motions, cause=None, places=None):
+def seen_tests(structure, motions, cause=None, change=None):
     """`SeenTest` of every motion, by name with its scale, as the sensors of the structure read it.
 
-    ``places`` by test: where the blocks stand, as of `placed`; the structure does not know it.
+    ``change`` of an experiment and the name of its test: what happens there, and the structure does not know.
     """
     file, tests = load_structure(STRUCTURES / f"{structure}.yaml"), []
     for seed, (name, (motion, scale)) in enumerate(motions.items()):
         experiment = Experiment(file, load_motion(motion, scale), Instruments())
-        if places:
-            experiment = experiment.with_parameters(**placed(file, places[name]))
+        if change:
+            experiment = change(experiment, name)
         if cause:
             experiment = extended_experiment(experiment, cause, 0, name)
         run = simulate(

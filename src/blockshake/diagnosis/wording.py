@@ -91,11 +91,10 @@ def history_words(path):
     if not path.changes:
         return f"{subject}: one {path.parameter} in all tests is enough"
     by_test = zip(path.tests, path.sizes, strict=True)
-    sizes = [f"{estimate_words('', size)} in {test}" for test, size in by_test]
-    return (
-        f"{subject} changed from test to test, which is {times_words(path.gain)} likelier than one {path.parameter}: "
-        f"{listed(sizes)}{f'; alone this explains more than {name_of(path.beats)}' if path.beats else ''}"
-    )
+    sizes = listed([f"{estimate_words('', size)} in {test}" for test, size in by_test])
+    more = f"; alone this explains more than {name_of(path.beats)}" if path.beats else ""
+    times = f"{times_words(path.gain)} likelier than one {path.parameter} in all tests"
+    return f"{subject}, by test: {path.parameter} {sizes}; that is {times}{more}"
 
 
 def when_words(when):

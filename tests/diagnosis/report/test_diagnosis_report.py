@@ -244,11 +244,11 @@ def test_missing_results_are_named_and_nothing_is_written(tmp_path, name):
 
 def test_sizes_that_change_from_test_to_test_are_on_the_first_page_and_others_are_not(documents, pages):
     words = (
-        "The edges of joint slab / block-1 changed from test to test, which is more than a million times likelier "
-        "than one inset: 10 mm (0 to 20) in alkion-250 and 50 mm (40 to 60.0) in basso-200."
+        "The edges of joint slab / block-1, by test: inset 10 mm (0 to 20) in alkion-250 and 50 mm (40 to 60.0) in "
+        "basso-200; that is more than a million times likelier than one inset in all tests."
     )
     first = [block.text for block in documents["unknown"].sections[0].blocks if block.kind == "text"]
     assert words in first
     items = blocks_of(documents["unknown"], "items", "history")[0].items
     assert items == (words, "The friction of all joints: one change in all tests is enough.")
-    assert "changed from test to test" not in " ".join(pages["named"][1].split("From test to test")[:1])
+    assert ", by test: " not in " ".join(pages["named"][1].split("From test to test")[:1])

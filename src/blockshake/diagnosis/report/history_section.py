@@ -45,6 +45,6 @@ def plot_histories(paths):
         axes.margins(x=0.2)
         axes.set_ylabel(f"{path.parameter} [{unit}]")
         axes.set_title(
-            sentence_case(history_words(path).partition(" changed from")[0].partition(":")[0])[:-1]
+            sentence_case(history_words(path).partition(", by test:")[0].partition(": one ")[0])[:-1]
         )
     return figure
