@@ -50,6 +50,7 @@ def test_the_model_is_extended_by_the_size_of_the_last_test(worn):
     assert last.lower < members[len(members) // 2] < last.upper
 
 
+@pytest.mark.slow
 def test_edges_that_are_worn_alike_in_all_tests_have_no_path():
     decision = decide(_seen(dict.fromkeys(MOTIONS, 0.06))).decision
     assert [one.name for one in decision.causes] == ["reduced-bearing"]
@@ -58,6 +59,7 @@ def test_edges_that_are_worn_alike_in_all_tests_have_no_path():
         assert size.lower <= 0.06 <= size.upper
 
 
+@pytest.mark.slow
 def test_blocks_that_shift_from_test_to_test_are_a_path():
     shifts = dict(zip(MOTIONS, (0.0, 0.012, 0.024, 0.036), strict=True))  # m, of the upper block
     places = {name: [[0.0] * 3, [0.0] * 3, [shift, 0.0, 0.0]] for name, shift in shifts.items()}
@@ -73,6 +75,7 @@ def test_blocks_that_shift_from_test_to_test_are_a_path():
         assert size.lower <= -0.5 * shift <= size.upper
 
 
+@pytest.mark.slow
 def test_friction_that_polishes_from_test_to_test_is_a_path_and_holds_back_a_cause_that_explains_less():
     motions = {
         "first": ("alkion", 2.0), "second": ("basso-tirreno", 2.0), "third": ("alkion", 2.5),
