@@ -15,6 +15,7 @@ ALIKE = {
     "eccentricity": {"push"},
     "reduced-bearing": {"changed-edge"},
     "weak-joint": {"dry-drag"},
+    "block-mass": {"loose-weight"},
 }
 _ROPE, _STOP = "outside-rope", "stopper-contact"  # a rope is a stop on the other side
 

@@ -64,6 +64,15 @@ def _sensor_gain(experiment, values, place):
     return experiment  # the readings themselves are changed: `distort`
 
 
+def _sensor_drift(experiment, values, place):
+    rate = values["rate"]
+    return experiment.with_instruments(marker_creep={place["marker"]: (rate, 0.2 * rate, 0.0)})
+
+
+def _sensor_saturation(experiment, values, place):
+    return experiment  # the readings themselves are changed: `distort`
+
+
 def with_stops(experiment, stops):
     """The same test with further stops."""
     present = [stopper.model_dump() for stopper in experiment.structure.file.stoppers]
@@ -123,6 +132,18 @@ def _eccentricity(experiment, values, place):
     )
 
 
+def _block_mass(experiment, values, place):
+    names = [entry["body"] for entry in blocks(experiment.structure)]
+    at = names.index(place["body"])
+    shares = {names[at]: (1.0 - _SHARED) * values["excess"], names[at - 1]: _SHARED * values["excess"]}
+    changed = {}
+    for body in experiment.structure.file.bodies:
+        if body.name in shares:
+            density = body.density or experiment.structure.file.materials[body.material].density
+            changed[f"bodies.{body.name}.density"] = (1.0 + shares[body.name]) * density
+    return experiment.with_parameters(**changed)
+
+
 def _neighbours(experiment, place):
     """Joints that share a block with a joint."""
     own = set(place["joint"])
@@ -147,6 +168,31 @@ def _rate_weakening_friction(experiment, values, place):
             pair: entry.coefficient * (1.0 - 0.1 * values["drop"]),
             f"{pair}.rate_drop": 0.9 * values["drop"],
             f"{pair}.rate_scale": 1.3 * values["scale"],
+        }
+    return experiment.with_parameters(**changed)
+
+
+def _slip_weakening_friction(experiment, values, place):
+    # a tenth of what slip loses is lost at once and the rest over a longer slip
+    changed = {}
+    for entry in experiment.structure.file.friction:
+        pair = f"friction.{'.'.join(entry.pair)}"
+        changed |= {
+            pair: entry.coefficient * (1.0 - 0.1 * values["drop"]),
+            f"{pair}.slip_drop": 0.9 * values["drop"],
+            f"{pair}.slip_scale": 1.3 * values["scale"],
+        }
+    return experiment.with_parameters(**changed)
+
+
+def _friction_asymmetry(experiment, values, place):
+    # what one side gains the other does not lose in full
+    changed = {}
+    for entry in experiment.structure.file.friction:
+        pair = f"friction.{'.'.join(entry.pair)}"
+        changed |= {
+            pair: entry.coefficient * (1.0 + 0.1 * abs(values["asymmetry"])),
+            f"{pair}.asymmetry": values["asymmetry"],
         }
     return experiment.with_parameters(**changed)
 
@@ -197,6 +243,8 @@ FORMS = {
     "clock-lag": ("the lag, and a clock 20 ppm slow", _clock_lag),
     "sensor-gain": ("error of the gain a tenth larger at the largest displacement", _sensor_gain),
     "marker-offset": ("marker off along the block's x too, by 0.3 of the height", _marker_offset),
+    "sensor-drift": ("a fifth of the drift across the shaking too", _sensor_drift),
+    "sensor-saturation": ("readings bend towards the end of the range", _sensor_saturation),
     "stopper-contact": ("two stops of half the stiffness, the second at 1.2 times the gap", _stopper_contact),
     "impact-restitution": (
         "the truth's own solver's restitution, at most 0.97, and in LS-DEM 2 % of critical damping along the joints",
@@ -204,10 +252,15 @@ FORMS = {
     ),
     "reduced-bearing": ("chamfers from 1.2 times the inset at the bottom to 0.8 times at the top", _reduced_bearing),
     "eccentricity": ("a fifth of the offset in the neighbour instead, the block 3 % heavier", _eccentricity),
+    "block-mass": ("a fifth of the excess in the neighbour instead", _block_mass),
     "weak-joint": ("a fifth of the loss in the neighbouring joints too", _weak_joint),
     "rate-weakening-friction": (
         "a tenth of the drop lost at any rate, the rest over 1.3 times the scale", _rate_weakening_friction
     ),
+    "slip-weakening-friction": (
+        "a tenth of the drop lost before any slip, the rest over 1.3 times the scale", _slip_weakening_friction
+    ),
+    "friction-asymmetry": ("the mean coefficient a tenth of the asymmetry larger", _friction_asymmetry),
     "joint-compliance": ("a fifth of the compliance in the neighbouring joints too", _joint_compliance),
     "base-compliance": ("a soft layer under the whole slab, whose vertical play counts too", _base_compliance),
 }  # fmt: skip
@@ -222,6 +275,12 @@ def distort(time, displacement, markers, effect):
         error = effect["values"]["error"] * (1.0 + 0.1 * (moved / largest) ** 2)
         changed = displacement.copy()
         changed[:, column] = moved * (1.0 + error)
+        return changed
+    if effect["name"] == "sensor-saturation":
+        column, end = markers.index(effect["place"]["marker"]), effect["values"]["range"]
+        changed = displacement.copy()
+        moved = np.clip(displacement[:, column] / end, -1.0, 1.0)
+        changed[:, column] = end * (moved - 0.05 * moved**3) / 0.95
         return changed
     if effect["name"] == "clock-lag":
         known = np.isfinite(displacement).all(axis=(1, 2))

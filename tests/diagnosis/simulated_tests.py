@@ -22,11 +22,16 @@ def cause_of(name, place, values, when=None):
     return made_up_cause(name, place, members=(values,), when=when or {})
 
 
-def seen_tests(structure, motions, cause=None):
-    """`SeenTest` of every motion, by name with its scale, as the sensors of the structure read it."""
+def seen_tests(structure, motions, cause=None, change=None):
+    """`SeenTest` of every motion, by name with its scale, as the sensors of the structure read it.
+
+    ``change`` of an experiment and the name of its test: what happens there, and the structure does not know.
+    """
     file, tests = load_structure(STRUCTURES / f"{structure}.yaml"), []
     for seed, (name, (motion, scale)) in enumerate(motions.items()):
         experiment = Experiment(file, load_motion(motion, scale), Instruments())
+        if change:
+            experiment = change(experiment, name)
         if cause:
             experiment = extended_experiment(experiment, cause, 0, name)
         run = simulate(

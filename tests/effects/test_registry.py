@@ -22,8 +22,8 @@ WEAK, STRONG = (
 )  # m/s2; the stack rocks at 2.4, slides with friction of 0.2 at 1.96, a weak joint of it at 0.49
 FREQUENCY, DURATION = 1.5, 1.0  # Hz, s
 SILENT = Instruments(marker_noise=0.0, accelerometer_noise=0.0)
-# when an effect shows: in the "quiet" phase and then in proportion to the motion, or "later", once blocks rock, slide
-# or meet something; and whether the mirrored motion adds the mirror image
+# when an effect shows: in the "quiet" phase and then in proportion to the motion, "later", once blocks rock, slide or
+# meet something, or "always" and alike; and whether the mirrored motion adds the mirror image
 LOOKS = {
     "table-pitch": ("quiet", "symmetric"),
     "vertical-motion": ("quiet", "one-sided"),
@@ -33,13 +33,18 @@ LOOKS = {
     "stopper-contact": ("later", "one-sided"),
     "impact-restitution": ("later", "symmetric"),
     "reduced-bearing": ("later", "symmetric"),
+    "sensor-drift": ("always", "one-sided"),
+    "sensor-saturation": ("later", "symmetric"),
     "eccentricity": ("later", "one-sided"),
+    "block-mass": ("later", "symmetric"),
     "weak-joint": ("later", "symmetric"),
     "rate-weakening-friction": ("later", "symmetric"),
+    "slip-weakening-friction": ("later", "symmetric"),
+    "friction-asymmetry": ("later", "one-sided"),
     "joint-compliance": ("quiet", "symmetric"),
     "base-compliance": ("quiet", "symmetric"),
 }
-SLIDES = ("weak-joint", "rate-weakening-friction")
+SLIDES = ("weak-joint", "rate-weakening-friction", "slip-weakening-friction", "friction-asymmetry")
 # m, what an effect that shows only later may leave before, by the elastic joints of LS-DEM: a tenth of a marker's
 # noise, and a tenth of what it must leave later
 LEFT_BEFORE, SHOWN_LATER = 1e-5, 1e-4
@@ -163,7 +168,9 @@ def test_it_shows_when_it_should(name, model, structure, nominal):
     strong = np.abs(_added(nominal, structure, name, STRONG, model)).max()
     weak = np.abs(_added(nominal, structure, name, WEAK, model)).max()
     assert strong > SHOWN_LATER
-    if LOOKS[name][0] == "quiet":
+    if LOOKS[name][0] == "always":
+        assert weak == pytest.approx(strong, rel=1e-6)
+    elif LOOKS[name][0] == "quiet":
         doubled = np.abs(_added(nominal, structure, name, 2.0 * WEAK, model)).max()
         # in proportion to the motion
         assert doubled == pytest.approx(2.0 * weak, rel=0.02)

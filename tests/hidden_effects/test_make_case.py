@@ -280,7 +280,8 @@ def _effect(name, structure):
 
 
 HIDDEN = sorted(
-    {
+    {("sliding-blocks", name) for name in EFFECTS}
+    | {
         (case.structure, name)
         for seeds in (SEEDS, CALIBRATION_SEEDS)
         for case in load_plan(seeds).cases

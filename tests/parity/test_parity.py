@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from synthetic_campaigns import make_tests, structure_of_three
 
+from blockshake.diagnosis.verdict.conclusion import sensor_causes
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE
 from blockshake.measurement.campaigns.campaign import Sensors, load_campaign
@@ -258,3 +259,29 @@ def test_a_fault_that_nobody_thought_of_stays_in_the_readings():
     found = {finding.effect for finding in _campaign_parity(campaign, names).findings}
     assert found
     assert _campaign_parity(campaign, names, found).findings == ()
+
+
+def test_the_registrys_drift_of_a_marker_is_named_with_its_size(three):
+    tests = make_tests(three, 21, mounting=1e-3, marker_creep={"block-1-lower": (2e-4, 0.0, 0.0)})
+    parity = _check(tests, three)
+    _only(parity, "sensor-drift", ("block-1-lower",), "drift")
+    rate = sensor_causes(parity.findings, {})["sensor-drift"].parameters["rate"]
+    assert rate.lower <= 2e-4 <= rate.upper
+    assert rate.unit == "m/s"
+
+
+def test_a_drift_of_the_frame_has_no_size_of_a_marker(three):
+    findings = _check(make_tests(three, 22, mounting=1e-3, marker_drift=(0.0, 1e-4, 0.0)), three).findings
+    assert sensor_causes(findings, {})["sensor-drift"].parameters == {}
+
+
+def test_the_registrys_range_of_a_marker_is_named_with_its_size(clean_tests, three):
+    moved = [
+        test["marker_displacement"].sel(marker="block-2-upper", axis="x") for test in clean_tests.values()
+    ]
+    end = 0.6 * float(max(np.abs(one).max() for one in moved))
+    tests = make_tests(three, 23, mounting=1e-3, marker_range={"block-2-upper": end})
+    parity = _check({name: without_faulty(test, three) for name, test in tests.items()}, three)
+    _only(parity, "sensor-saturation", ("block-2-upper",), "range")
+    stated = sensor_causes(parity.findings, {})["sensor-saturation"].parameters["range"]
+    assert stated.lower <= end <= stated.upper

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from blockshake.diagnosis.answer.history import EDGES, FRICTION, MIDDLE
 from blockshake.diagnosis.answer.places import EVERYWHERE
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS, title_of
@@ -78,6 +79,22 @@ def cause_words(cause, place):
     """A `Cause` with its place in words, its sizes, and when it acts."""
     name = f"{cause.title}{f' ({place})' if place else ''}"
     return ", ".join(part for part in (name, sizes_of(cause), when_words(cause.when)) if part)
+
+
+def history_words(path):
+    """A `History` in a sentence: sizes by test where they change, or that one size is enough."""
+    name, where = path.quantity, place_words(path.place)
+    if name in (EDGES, MIDDLE, FRICTION):
+        subject = f"the {name} of {where or 'all joints'}"
+    else:
+        subject = f"{name_of(name)}{f' ({where})' if where else ''}"
+    if not path.changes:
+        return f"{subject}: one {path.parameter} in all tests is enough"
+    by_test = zip(path.tests, path.sizes, strict=True)
+    sizes = listed([f"{estimate_words('', size)} in {test}" for test, size in by_test])
+    more = f"; alone this explains more than {name_of(path.beats)}" if path.beats else ""
+    times = f"{times_words(path.gain)} likelier than one {path.parameter} in all tests"
+    return f"{subject}, by test: {path.parameter} {sizes}; that is {times}{more}"
 
 
 def when_words(when):

@@ -2,31 +2,37 @@
 
 from blockshake.effects import (
     base_compliance,
+    block_mass,
     eccentricity,
     impact_restitution,
     joint_compliance,
-    rate_weakening_friction,
     reduced_bearing,
     stopper_contact,
     table_pitch,
     vertical_motion,
+)
+from blockshake.effects.friction import (
+    friction_asymmetry,
+    rate_weakening_friction,
+    slip_weakening_friction,
     weak_joint,
 )
-from blockshake.effects.sensor_faults import CLOCK_LAG, MARKER_OFFSET, SENSOR_GAIN
+from blockshake.effects.sensor_faults import FAULTS
 from blockshake.errors import InputError
 
 _EFFECTS = (
     table_pitch.EFFECT,
     vertical_motion.EFFECT,
-    CLOCK_LAG,
-    SENSOR_GAIN,
-    MARKER_OFFSET,
+    *FAULTS,
     stopper_contact.EFFECT,
     impact_restitution.EFFECT,
     reduced_bearing.EFFECT,
     eccentricity.EFFECT,
+    block_mass.EFFECT,
     weak_joint.EFFECT,
     rate_weakening_friction.EFFECT,
+    slip_weakening_friction.EFFECT,
+    friction_asymmetry.EFFECT,
     joint_compliance.EFFECT,
     base_compliance.EFFECT,
 )

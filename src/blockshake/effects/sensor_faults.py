@@ -9,7 +9,7 @@ def _clock_lag(experiment, values, place):
     return experiment.with_instruments(marker_lag=experiment.instruments.marker_lag + values["lag"])
 
 
-CLOCK_LAG = Effect(
+_CLOCK_LAG = Effect(
     name="clock-lag",
     title="lag of the optical clock",
     acts="observation",
@@ -33,7 +33,7 @@ def _sensor_gain(experiment, values, place):
     )
 
 
-SENSOR_GAIN = Effect(
+_SENSOR_GAIN = Effect(
     name="sensor-gain",
     title="gain of a marker",
     acts="observation",
@@ -54,7 +54,7 @@ def _marker_offset(experiment, values, place):
     return experiment.with_instruments(marker_offset={**offsets, name: (x, y, z + values["height"])})
 
 
-MARKER_OFFSET = Effect(
+_MARKER_OFFSET = Effect(
     name="marker-offset",
     title="offset of a marker",
     acts="observation",
@@ -66,3 +66,44 @@ MARKER_OFFSET = Effect(
     places=markers,
     act=_marker_offset,
 )  # fmt: skip
+
+
+def _sensor_drift(experiment, values, place):
+    """The zero of one marker creeps along x."""
+    creeps = experiment.instruments.marker_creep
+    return experiment.with_instruments(marker_creep={**creeps, place["marker"]: (values["rate"], 0.0, 0.0)})
+
+
+_SENSOR_DRIFT = Effect(
+    name="sensor-drift",
+    title="drift of a marker",
+    acts="observation",
+    equation="reading = truth + d t",
+    source="creep of a camera, a mount or an amplifier, by definition",
+    parameters=(EffectParameter("rate", "m/s", "of the zero along x", 0.0, -5e-4, 5e-4, 2e-4),),
+    confused_with=("sensor-gain", "marker-offset"),
+    told_apart_by="readings before and after the shaking; rigid fit of at least four markers of the block",
+    places=markers,
+    act=_sensor_drift,
+)
+
+
+def _sensor_saturation(experiment, values, place):
+    """One marker reads nothing beyond its range."""
+    ranges = experiment.instruments.marker_range
+    return experiment.with_instruments(marker_range={**ranges, place["marker"]: values["range"]})
+
+
+_SENSOR_SATURATION = Effect(
+    name="sensor-saturation",
+    title="range of a marker",
+    acts="observation",
+    equation="reading = truth between -r and r",
+    source="end of a camera's view or of an amplifier, by definition",
+    parameters=(EffectParameter("range", "m", "beyond which nothing is read", 1.0, 0.005, 1.0, 0.05),),
+    confused_with=("sensor-gain",),
+    told_apart_by="readings that stand still at one value in several tests",
+    places=markers,
+    act=_sensor_saturation,
+)
+FAULTS = (_CLOCK_LAG, _SENSOR_GAIN, _MARKER_OFFSET, _SENSOR_DRIFT, _SENSOR_SATURATION)

@@ -42,7 +42,9 @@ SLOW = [
     ("spring-once", TOP, {"stiffness": 5e6}, {"test": "third", "side": 1, "gap": 0.012}, "two-blocks"),
     ("changed-edge", BASE, {"inset": 0.08}, {"before": ["weak", "first"], "lasts": True}, "two-blocks"),
     ("loose-weight", {"body": "block-2"}, {"mass": 1800.0}, {"grip": 0.2}, "two-blocks"),
-    ("unmodelled-mass", TOP, {"mass": 1500.0}, {}, "two-blocks"),
+    ("block-mass", TOP, {"excess": 0.25}, {}, "two-blocks"),
+    ("slip-weakening-friction", {}, {"drop": 0.8, "scale": 0.02}, {}, "sliding-blocks"),
+    ("friction-asymmetry", {}, {"asymmetry": -0.25}, {}, "sliding-blocks"),
 ]
 WITHIN = 0.25  # of the size: the forms in the solvers are the columns' own, the discretisation is not
 # a force elsewhere makes the same rows by its moment; one that follows the motion there by the arm squared

@@ -194,9 +194,7 @@ BLOW = made_up_cause(
     "blow", {"body": "block-3", "height": 0.4}, members=({"impulse": 1e3},), when={"blows": {}}
 )
 FREE = made_up_cause("unknown-force", {"body": "block-3"}, members=())
-MASS = made_up_cause(
-    "unmodelled-mass", {"body": "block-2", "height": 0.0}, members=members(mass=(400.0, 600.0))
-)
+MASS = made_up_cause("block-mass", {"body": "block-2", "height": 0.0}, members=members(excess=(0.05, 0.08)))
 
 
 @pytest.mark.parametrize(

@@ -62,6 +62,23 @@ PARTS = {
 }
 
 
+def _history(quantity, unit, sizes, **changed):
+    sizes = [{"estimate": one, "lower": one - 0.01, "upper": one + 0.01, "unit": unit} for one in sizes]
+    values = {
+        "parameter": "inset",
+        "place": {},
+        "tests": OPEN[1:],
+        "sizes": sizes,
+        "gain": -1.5,
+        "changes": False,
+    }
+    return {"quantity": quantity, **values, **changed}
+
+
+WORN = _history("edges", "m", (0.01, 0.05), place={"joint": ["slab", "block-1"]}, gain=30.0, changes=True)
+SOUND = _history("friction", "1", (0.01, 0.02), parameter="change")
+
+
 def made_up_decision(kind):
     """A decision of a kind."""
     return Decision.model_validate({
@@ -81,6 +98,7 @@ def made_up_decision(kind):
         "silent": OPEN[:1],
         "n_rows": 672,
         "cannot_see": ["the rotation of block-4, which has one marker"],
+        "histories": [WORN, SOUND] if kind == "unknown" else [SOUND],
     })  # fmt: skip
 
 

@@ -246,3 +246,15 @@ def test_odds_are_a_row_a_cause_the_likeliest_first(documents):
     assert table.rows[0][2] == "the likeliest"
     assert "nothing" in [row[0] for row in table.rows]
     assert {row[1] for row in table.rows} <= {"", "effect", "form from outside"}
+
+
+def test_sizes_that_change_from_test_to_test_are_on_the_first_page_and_others_are_not(documents, pages):
+    words = (
+        "The edges of joint slab / block-1, by test: inset 10 mm (0 to 20) in alkion-250 and 50 mm (40 to 60.0) in "
+        "basso-200; that is more than a million times likelier than one inset in all tests."
+    )
+    first = [block.text for block in documents["unknown"].sections[0].blocks if block.kind == "text"]
+    assert words in first
+    items = blocks_of(documents["unknown"], "items", "history")[0].items
+    assert items == (words, "The friction of all joints: one change in all tests is enough.")
+    assert ", by test: " not in " ".join(pages["named"][1].split("From test to test")[:1])

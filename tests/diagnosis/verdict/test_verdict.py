@@ -10,7 +10,7 @@ from blockshake.errors import InputError
 CONTRACT = [
     "decision", "causes", "probabilities", "parameters", "location", "misfit", "excluded_above", "next_test", "gain",
     "runs", "caveats", "outside", "odds", "places", "limits", "word", "missing", "row_gain", "next_tests",
-    "extension", "structure", "tests",
+    "extension", "histories", "structure", "tests",
 ]  # fmt: skip
 
 

@@ -7,16 +7,15 @@ import numpy as np
 from blockshake.diagnosis.evidence.explanation import mean_evidence
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
-from blockshake.effects.rate_weakening_friction import EFFECT as RATE_WEAKENING
 from blockshake.effects.registry import EFFECTS
-from blockshake.effects.weak_joint import EFFECT as WEAK_JOINT
 
 FREE_SHARE = 0.85  # of what any force at its place would explain, that a named form must
 FREE_FORCE = "unknown-force"
 _PRIOR, _PRIOR_OUTSIDE, _PRIOR_FREE = -3.0, -3.5, -6.0
 _NEEDED = 6.0  # nats over none that are no chance: of 40 sound open cases none gained 2
 _NEEDED_OF_FREE = 20.0  # any error of the joints' model speaks for a force without a form
-_NEEDED_IN_LOOPS = 40.0  # of lost friction: where joints make a loop, the normal force of none is known
+_OF_FRICTION = ("weak-joint", "rate-weakening-friction", "slip-weakening-friction", "friction-asymmetry")
+_NEEDED_IN_LOOPS = 40.0  # of these: where joints make a loop, the normal force of none is known
 _NEEDED_OF_SLAB = {"turns": 8.0, "lifts": 20.0}  # outliers of one marker lift the slab
 _BESIDE_SLAB = 10.0  # nats more of a cause in the joints of a slab that has one of its own
 _BESIDE = 5.0  # nats more of a second cause in the joints
@@ -141,7 +140,7 @@ def needed_beside(slab, first=None):
 
 def needed_of(cause, tree=True):
     """Gain over none from which a cause is no chance, where joints make a tree or a loop."""
-    if not tree and cause in (WEAK_JOINT.name, RATE_WEAKENING.name):
+    if not tree and cause in _OF_FRICTION:
         return _NEEDED_IN_LOOPS
     return _NEEDED_OF_FREE if cause == FREE_FORCE else _NEEDED
 

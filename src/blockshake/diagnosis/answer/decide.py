@@ -17,6 +17,7 @@ from blockshake.diagnosis.answer.answer import (
 from blockshake.diagnosis.answer.decision import Cause, Decision, Part
 from blockshake.diagnosis.answer.departures import departures, largest, slab_departures
 from blockshake.diagnosis.answer.explain import gather_evidence
+from blockshake.diagnosis.answer.history import histories, of_last_test
 from blockshake.diagnosis.answer.limits import cannot_see, excluded_above, limits_of
 from blockshake.diagnosis.answer.next_test import next_tests
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_of
@@ -63,7 +64,7 @@ def decide(seen, without=(), unseen=()):
     slabs = [slab_motion(test) for test in seen]
     slab = explain_slab(slabs, without)
     of_slab, tree = slab_groups(slab), seen[0].tree
-    acting, explained = [], []
+    acting, explained, beside = [], [], None
     first = group_of(rank(evidence, closed), needed_beside(bool(of_slab)), tree)
     if first:
         acting.append(_part("joints", first, seen, evidence, closed))
@@ -76,6 +77,9 @@ def decide(seen, without=(), unseen=()):
             if second:
                 acting.append(_part("joints, beside the first", second, seen, beside, {}))
                 explained.append(beside.best(_key(second)))
+    paths = histories(evidence, beside, first.rivals[0] if first else None, seen[0])
+    if first:
+        acting[0] = _with_last_sizes(acting[0], paths)
     for readings, group in of_slab:
         acting.append(_part(readings, group, seen, None, {}, slab))
     impacts = restitution_gain(seen)
@@ -97,8 +101,16 @@ def decide(seen, without=(), unseen=()):
         n_rows=sum(len(test.rows.value) for test in seen),
         impacts=impacts.statement,
         cannot_see=(*unseen, *cannot_see(seen)),
+        histories=paths,
     )
     return Decided(decision, shown.merge(slab_departures(seen, slabs, slab, parts)))
+
+
+def _with_last_sizes(part, paths):
+    """The `Part` with its first cause as large as in the last test, where the cause changes from test to test."""
+    first, *others = part.causes
+    changed = [path for path in paths if path.quantity == first.name and path.changes]
+    return part.model_copy(update={"causes": (of_last_test(first, changed[0]), *others)}) if changed else part
 
 
 def _of_impacts(impacts):

@@ -116,6 +116,38 @@ class Part(Strict):
         return tuple(one for one in self.causes if one.outside)
 
 
+class History(Strict):
+    """A size by test, in the order of the campaign: of a cause, or of sound joints.
+
+    Attributes
+    ----------
+    quantity : str
+        Name of the cause, or ``edges``, ``middle`` or ``friction``.
+    parameter : str
+        Name of the size.
+    place : dict
+        As of `Cause`; empty of all joints together.
+    tests : tuple of str
+    sizes : tuple of Estimate
+        Of each test alone, under one prior.
+    gain : float
+        Logarithm of the evidence of sizes that walk from test to test over that of one size for all.
+    changes : bool
+        It is more than a chance.
+    beats : str
+        Name of a cause of which these sizes, without it, explain more than it does; else empty.
+    """
+
+    quantity: str
+    parameter: str
+    place: dict[str, JsonValue]
+    tests: tuple[str, ...]
+    sizes: tuple[Estimate, ...]
+    gain: Finite
+    changes: bool
+    beats: str = ""
+
+
 class Decision(Strict):
     """The whole file.
 
@@ -142,6 +174,8 @@ class Decision(Strict):
         Statement on the share of spin that impacts kept.
     cannot_see : tuple of str
         What the sensors do not show.
+    histories : tuple of History
+        Sizes from test to test.
     """
 
     decision: Literal["none", "named", "ambiguous", "combination", "unknown"]
@@ -156,6 +190,7 @@ class Decision(Strict):
     n_rows: Count
     impacts: str = ""
     cannot_see: tuple[str, ...] = ()
+    histories: tuple[History, ...] = ()
 
     @property
     def causes(self):

@@ -20,7 +20,7 @@ from blockshake.diagnosis.outside.free_force import explain_free_force
 from blockshake.diagnosis.outside.loose_weight import explain_loose_weight
 from blockshake.diagnosis.outside.push import explain_push
 from blockshake.diagnosis.outside.spring_once import explain_spring_once
-from blockshake.diagnosis.outside.unmodelled_mass import explain_unmodelled_mass
+from blockshake.effects.block_mass import HEIGHTS
 from blockshake.effects.registry import EFFECTS
 from blockshake.effects.stopper_contact import EFFECT as STOPPER_CONTACT
 from blockshake.forces.seen.point_rows import point_rows
@@ -30,7 +30,6 @@ _UNHEARD = 20.0  # nats: a likelihood that says so much less for the first cause
 _LOOKED_AT = 4  # causes
 _FIRST_LOOK = (1.0,), ((4.0, 0.0),)
 DISCREPANCIES = ((1.0, 0.0), (4.0, -3.0), (16.0, -10.0))  # multiple, logarithm of its prior
-_HEIGHTS = (0.0, 0.42)  # above the mass centre, over the block's height
 
 
 @dataclass(frozen=True)
@@ -121,7 +120,6 @@ def _from_outside(likelihood, tests, points):
         yield from explain_following(likelihood, point, weight)
         for search in (explain_push, explain_blow, explain_spring_once):
             yield search(likelihood, point, weight)
-        yield explain_unmodelled_mass(likelihood, tests, point)
     # the height hardly matters to a force of any history
     highest = {point.body: point for point in points}
     yield from (explain_free_force(likelihood, point) for point in highest.values())
@@ -263,7 +261,7 @@ def force_points(tests):
     points = []
     for body in seen.free:
         name = seen.structure.body_names[body]
-        for height in _HEIGHTS:
+        for height in HEIGHTS:
             rows = [point_rows(test.seen, name, height) for test in tests]
             if any(point.unit.any() for point in rows):
                 points.append(

@@ -8,6 +8,7 @@ from blockshake.diagnosis.answer.decision import MEMBERS, Estimate
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS
 
+NINE_TENTHS = 1.645  # standard deviations of a Gaussian, within which they lie
 FORM = 0.1  # of a size, by which a cause of another form than the registry's has another one
 _DRAWS = 2000
 _INTERVAL = (0.05, 0.5, 0.95)
@@ -37,7 +38,7 @@ def size_of(name, place, fits, logs):
     dict of str to Estimate
     """
     drawn, _ = _drawn(name, place, fits, logs)
-    return {key: _estimate(drawn[key], unit) for key, unit in _units(name).items()}
+    return {key: _estimate(drawn[key], unit) for key, unit in units_of(name).items()}
 
 
 def _drawn(name, place, fits, logs):
@@ -46,12 +47,12 @@ def _drawn(name, place, fits, logs):
     weights = np.exp(logs - logs.max())
     counts = generator.multinomial(_DRAWS, weights / weights.sum())
     parts = [
-        _read(name, fit.values, _amplitudes(fit, count, generator), generator.uniform(-0.5, 0.5, count))
+        read_sizes(name, fit.values, _amplitudes(fit, count, generator), generator.uniform(-0.5, 0.5, count))
         for fit, count in zip(fits, counts, strict=True)
         if count
     ]
     drawn = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
-    for key in list(_units(name))[1:]:  # the first one follows the amplitude, which has that error
+    for key in list(units_of(name))[1:]:  # the first one follows the amplitude, which has that error
         drawn[key] = drawn[key] * np.exp(FORM * generator.standard_normal(_DRAWS))
     return drawn, generator.permutation(_DRAWS)
 
@@ -65,14 +66,16 @@ def _amplitudes(fit, count, generator):
     return np.abs(drawn) if fit.positive else drawn
 
 
-def _read(name, values, amplitudes, between):
+def read_sizes(name, values, amplitudes, between):
+    """Parameters of a cause by name, arrays, from amplitudes of the variant with these values; see `Effect.reads`."""
     if name in FORMS:
         return {FORMS[name].size: amplitudes}
     read = EFFECTS[name].reads(values, amplitudes, between)
     return {key: np.broadcast_to(value, amplitudes.shape) for key, value in read.items()}
 
 
-def _units(name):
+def units_of(name):
+    """Units of the parameters of a cause by name, the size first."""
     if name in FORMS:
         return {FORMS[name].size: FORMS[name].unit}
     return {parameter.name: parameter.unit for parameter in EFFECTS[name].parameters}

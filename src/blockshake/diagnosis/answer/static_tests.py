@@ -95,7 +95,7 @@ def expected_readings(seen, name, place, values):
             ("lean", seen.faces[number].name): size * mass[index] / _carried(seen, number) for number in over
         }
         return {("centre", body): size, **leans}
-    if name in ("unmodelled-mass", "loose-weight"):
+    if name == "loose-weight":
         return {("mass", body): size / mass[names.index(body)]}
     if name == "reduced-bearing":
         return {("lever", face.name): -size for face in seen.faces if joint in (None, face.name)}
@@ -103,6 +103,7 @@ def expected_readings(seen, name, place, values):
         edge = values.get("edge", 0)
         return {("lever", joint): -size * (0.5 if edge else 1.0), ("lean", joint): -0.5 * edge * size}
     changed = {
+        "block-mass": (("mass", body), size),
         "stopper-contact": (("spring", "top"), size if values.get("gap", 0.0) < _PULLED else 0.0),
         "weak-joint": (("friction", joint), 1.0 - size),
         "joint-compliance": (("layer", joint), size),

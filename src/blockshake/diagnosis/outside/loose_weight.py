@@ -10,7 +10,7 @@ from blockshake.diagnosis.outside.form import Form
 from blockshake.effects.effect import Columns
 from blockshake.forces.seen.wrench_histories import force_at
 
-_GRIPS = (0.05, 0.1, 0.2, 0.3)  # coefficients of friction; one that holds is an unmodelled mass
+_GRIPS = (0.05, 0.1, 0.2, 0.3)  # coefficients of friction; one that holds is mass of the block
 _SHARE_SCALE = 0.2  # of the block's mass
 
 

@@ -8,7 +8,6 @@ from blockshake.diagnosis.outside import (
     loose_weight,
     push,
     spring_once,
-    unmodelled_mass,
 )
 
 FORMS = {
@@ -20,7 +19,6 @@ FORMS = {
         spring_once.FORM,
         changed_edge.FORM,
         loose_weight.FORM,
-        unmodelled_mass.FORM,
         free_force.FORM,
     )
 }

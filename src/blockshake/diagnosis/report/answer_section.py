@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.diagnosis.report.statement import not_told, sensor_causes, statement
+from blockshake.diagnosis.report.statement import changed, not_told, sensor_causes, statement
 from blockshake.diagnosis.wording import chance_words, estimate_words, listed, name_of, percent_words
 from blockshake.effects.registry import title_of
 from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
@@ -28,7 +28,8 @@ _MANY = 200  # points, from which on they are small
 
 def answer_section(diagnosed):
     """The answer in two sentences, what holds it back, and the forces measured and explained."""
-    blocks = [Box(statement(diagnosed), _facts(diagnosed)), *(Text(words) for words in not_told(diagnosed))]
+    sentences = [*not_told(diagnosed), *changed(diagnosed)]
+    blocks = [Box(statement(diagnosed), _facts(diagnosed)), *map(Text, sentences)]
     if diagnosed.synthetic:
         blocks.append(
             Text(

@@ -12,7 +12,7 @@ from blockshake.pages.wording import sentence_case
 def limits_section(diagnosed):
     """Table of detection limits, what the sensors do not show, caveats."""
     decision = diagnosed.decision
-    elsewhere = (*OF_GAIN, "do not tell these apart")  # in sections of their own
+    elsewhere = (*OF_GAIN, "do not tell these apart", ", by test: ")  # in sections of their own
     caveats = [
         one for one in dict.fromkeys(diagnosed.verdict.caveats)
         if one not in decision.cannot_see and not any(words in one for words in elsewhere)

@@ -8,6 +8,7 @@ from blockshake.diagnosis.misfit.section import misfit_section
 from blockshake.diagnosis.outcomes.report import compose_outcomes
 from blockshake.diagnosis.report.answer_section import answer_section
 from blockshake.diagnosis.report.content import load_diagnosed
+from blockshake.diagnosis.report.history_section import history_section
 from blockshake.diagnosis.report.limits_section import limits_section
 from blockshake.diagnosis.report.odds_section import odds_section
 from blockshake.diagnosis.report.origin_section import origin_section
@@ -23,6 +24,7 @@ _SECTIONS = (
     answer_section,
     odds_section,
     size_section,
+    history_section,
     gain_section,
     sensors_section,
     misfit_section,

@@ -8,6 +8,7 @@ from blockshake.diagnosis.wording import (
     beyond,
     cause_words,
     estimate_words,
+    history_words,
     listed,
     name_of,
     named_place,
@@ -15,7 +16,7 @@ from blockshake.diagnosis.wording import (
     times_words,
 )
 from blockshake.effects.registry import title_of
-from blockshake.pages.wording import count_words
+from blockshake.pages.wording import count_words, sentence_case
 
 _MOST_PLACES = 4
 RATIO = round(np.exp(ODDS))  # of odds, within which causes are not told apart
@@ -78,6 +79,11 @@ def sensor_causes(diagnosed):
         ])
         for name, own in where.items()
     ]  # fmt: skip
+
+
+def changed(diagnosed):
+    """Sentences on sizes that change from test to test."""
+    return [sentence_case(history_words(path)) for path in diagnosed.decision.histories if path.changes]
 
 
 def not_told(diagnosed):

@@ -5,13 +5,14 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.diagnosis.answer.decision import Estimate
+from blockshake.diagnosis.answer.size import NINE_TENTHS
 from blockshake.diagnosis.verdict.ladder import rung
 from blockshake.diagnosis.verdict.verdict import MeasuredGain, Misfit, Outside, Verdict
+from blockshake.diagnosis.wording import history_words
 from blockshake.effects.registry import EFFECTS, title_of
 from blockshake.parity.kinds.registry import KINDS
 
 _WHERE = ("joint", "body")
-_SIGMAS = 1.645  # of a Gaussian, within which nine tenths lie
 _FORM = 0.05  # share of a fault's size by which it may vary with the reading, as that of a real sensor does
 
 
@@ -77,18 +78,20 @@ def conclude(decision, findings, kinds, caveats=(), measured=None, judged=None):
         word=word,
         missing=missing,
         extension=decision.extending,
+        histories=decision.histories,
         **judged or {},
     )
 
 
 def _caveats(decision):
-    """Lines on rivals, on forms beside the causes, and on tests that tell nothing."""
+    """Lines on rivals, forms beside the causes, sizes that change, and tests that tell nothing."""
     for part in decision.parts:
         names = [cause.title for cause in part.causes]
         if len(names) > 1:
             yield f"{' or '.join(names)}: the tests do not tell these apart"
         elif part.forms and decision.causes:
             yield f"beside the causes something acts that no effect of the registry is: {names[0]}"
+    yield from (history_words(path) for path in decision.histories if path.changes)
     if decision.silent:
         yield f"no joint was seen to turn, slip or lift in {', '.join(decision.silent)}"
 
@@ -141,19 +144,23 @@ def sensor_causes(findings, kinds):
     for finding in sorted(findings, key=lambda finding: (finding.p, finding.where, finding.tests)):
         sensor = finding.where[0]
         location = {} if sensor.startswith("optical ") else {kinds.get(sensor, "marker"): sensor}
-        causes.setdefault(finding.effect, SensorCause(_estimates(finding), location, finding.p))
+        causes.setdefault(finding.effect, SensorCause(_estimates(finding, location), location, finding.p))
     return causes
 
 
-def _estimates(finding):
+def _estimates(finding, location):
     """Size of a fault by the name of the registry's parameter; empty where its quantity is not that parameter."""
-    effect, component = EFFECTS.get(finding.effect), KINDS[finding.quantity].size
-    if effect is None or component is None or not len(finding.estimate):
+    effect, kind = EFFECTS.get(finding.effect), KINDS[finding.quantity]
+    component, (unit, other) = kind.size, kind.units
+    alike = (
+        unit == other or "marker" in location
+    )  # the drift of a channel, or of the frame, is none of a marker
+    if effect is None or component is None or not len(finding.estimate) or not alike:
         return {}
     size = effect.parameters[0]
     component = component if len(finding.estimate) == 3 else 0
     estimate = float(finding.estimate[component])
-    reach = _SIGMAS * float(np.hypot(finding.standard_error[component], _FORM * estimate))
+    reach = NINE_TENTHS * float(np.hypot(finding.standard_error[component], _FORM * estimate))
     return {
         size.name: Estimate(estimate=estimate, lower=estimate - reach, upper=estimate + reach, unit=size.unit)
     }

@@ -38,6 +38,8 @@ def rung(kind, decision, beside_sensor, measured):
         missing.append("two causes act together")
     if decision.causes and beside_sensor:
         missing.append("a sensor's fault acts beside it")
+    if any(path.beats for path in decision.histories):
+        missing.append("sizes that change from test to test explain more")
     tests = len(decision.tests) - len(decision.silent)
     if decision.n_rows and tests < _TESTS_TO_ESTABLISH:
         missing.append(f"it was judged by {tests} tests only")

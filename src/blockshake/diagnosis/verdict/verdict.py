@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, JsonValue, model_validator
 
-from blockshake.diagnosis.answer.decision import Cause, Estimate, Measurement
+from blockshake.diagnosis.answer.decision import Cause, Estimate, History, Measurement
 from blockshake.diagnosis.verdict.ladder import ESTABLISHED, NOTHING, ONE_OF, PROBABLE, UNKNOWN
 from blockshake.files import load_json, write_json
 from blockshake.statistics.resampling import limits_of
@@ -104,6 +104,7 @@ class Verdict(Shown, Strict):
     extension: tuple[Cause, ...] = Field(
         (), description="the likeliest cause of every part, by which a study is extended"
     )
+    histories: tuple[History, ...] = Field((), description="sizes from test to test")
     structure: str = Field("", description="digest of what was tested, by its content")
     tests: dict[str, str] = Field(
         default_factory=dict, description="digests of the files that it was judged by"

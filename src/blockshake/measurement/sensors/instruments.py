@@ -12,7 +12,7 @@ from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.schema import AXES, Vector
 from blockshake.measurement.sensors import accelerometers, markers, transducers
 from blockshake.measurement.sensors.markers import marker_position
-from blockshake.validation import Finite, NotNegative, ProperFraction, Strict
+from blockshake.validation import Finite, NotNegative, Positive, ProperFraction, Strict
 
 _BURST = 10  # readings that a dropout loses in the mean
 _OUTLIER = 10.0  # standard deviations of the noise
@@ -59,6 +59,8 @@ class Instruments(Sensors):
     marker_offset: dict[str, Vector] = Field(
         {}, description="by marker: where it is less where it is said to be, body frame [m]"
     )
+    marker_creep: dict[str, Vector] = Field({}, description="by marker: drift of its zero [m/s]")
+    marker_range: dict[str, Positive] = Field({}, description="by marker: its largest reading [m]")
     channel_gain: dict[str, Finite] = Field({}, description="by accelerometer channel [1]")
     marker_dropouts: ProperFraction = Field(
         0.0, description="share of the marker readings that are lost, in bursts [1]"
@@ -103,7 +105,8 @@ def observe(run, structure, instruments, seed):
     check_instruments(instruments, structure, channels)
     displacement = _delayed(displacement, time, instruments.marker_lag)
     displacement *= np.array([instruments.marker_gain.get(name, 1.0) for name in names])[:, None]
-    displacement += (time - time[0])[:, None, None] * np.array(instruments.marker_drift)
+    creeps = [instruments.marker_creep.get(name, (0.0, 0.0, 0.0)) for name in names]
+    displacement += (time - time[0])[:, None, None] * (np.array(instruments.marker_drift) + creeps)
     memory = instruments.noise_memory
     read = displacement + _noise(noise, displacement.shape, memory) * instruments.marker_noise
     far = wrong.random(read.shape[:2]) < instruments.marker_outliers
@@ -111,6 +114,8 @@ def observe(run, structure, instruments, seed):
     read[far] += wrong.normal(0.0, _OUTLIER * instruments.marker_noise, (far.sum(), 3))
     first = places[0] + read[0]
     read -= read[:1]
+    for name, end in instruments.marker_range.items():
+        np.clip(read[:, names.index(name)], -end, end, out=read[:, names.index(name)])
     read[_lost(losses, len(time), len(names), instruments.marker_dropouts)] = np.nan
     test = xr.Dataset(
         {
@@ -202,7 +207,8 @@ def _lost(generator, n_times, n_markers, share):
 def check_instruments(instruments, structure, channels):
     """Refuse faults of markers that a structure lacks, and of other ``channels``, with `InputError`."""
     markers = [marker.name for marker in structure.file.markers]
-    for key, known in (("marker_gain", markers), ("marker_offset", markers), ("channel_gain", channels)):
+    of_markers = ("marker_gain", "marker_offset", "marker_creep", "marker_range")
+    for key, known in (*((key, markers) for key in of_markers), ("channel_gain", channels)):
         for name in getattr(instruments, key):
             if name not in known:
                 raise InputError(

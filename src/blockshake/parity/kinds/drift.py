@@ -37,7 +37,9 @@ def _take_step_out(test, findings, structure):
         test[variable].loc[selection] -= size * (test["time_acc"].to_numpy() > time)
 
 
-SLIP = Kind("slip", "sensor-drift", "reading = truth + s H(t - t0)", _take_step_out, units=("m", "m"))
+SLIP = Kind(
+    "slip", "sensor-drift", "reading = truth + s H(t - t0)", _take_step_out, units=("m", "m"), size=None
+)
 # m, of a hook or a bracket that beds in; what a slip leaves is a step, whose time is searched
 OF_END = Column(SLIP, 1, 5e-4, lambda held: held.misfit[:, None] * 0.0, by_test=True)
 

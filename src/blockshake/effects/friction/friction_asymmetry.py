@@ -1,4 +1,4 @@
-"""An effect that is not in the registry, as docs/theory/effects.md says: friction is larger for slip to one side."""
+"""Friction is larger for slip to one side than to the other, as of faces that were cut or worn one way."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from blockshake.effects.effect import Columns, Effect, EffectParameter
 from blockshake.effects.places import nowhere
 from blockshake.forces.seen.wrench_histories import friction_against_slip
 
-_SCALE = 0.3
+_SCALE, _LARGEST = 0.3, 0.99
 
 
 def _act(experiment, values, place):
@@ -26,16 +26,16 @@ def _columns(seen, place):
 
 
 EFFECT = Effect(
-    name="one-way-friction",
+    name="friction-asymmetry",
     title="friction of two sides",
     acts="contact",
     equation="mu (1 + a) for slip of the upper body towards +x, mu (1 - a) towards -x",
-    source="Coulomb",
+    source="Coulomb, for each direction",
     parameters=(EffectParameter("asymmetry", "1", "of the coefficient", 0.0, -0.5, 0.5, 0.3),),
     confused_with=("eccentricity",),
-    told_apart_by="a test with the motion reversed",
+    told_apart_by="a test with the motion reversed; a jack that pushes the block to either side",
     places=nowhere,
     act=_act,
     columns=_columns,
-    reads=lambda values, size, between: {"asymmetry": size},
+    reads=lambda values, size, between: {"asymmetry": np.clip(size, -_LARGEST, _LARGEST)},
 )
