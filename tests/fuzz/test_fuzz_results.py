@@ -24,7 +24,7 @@ _ESTIMATE = {"estimate": 0.3, "lower": 0.2, "upper": 0.4, "unit": "1"}
 _CONTRAST = {"estimate": 0.8, "lower": 0.7, "upper": 0.9}
 _GAIN = {"recalibrated": _CONTRAST, "nominal": _CONTRAST, "discrepancy": _CONTRAST, "placebo": None}
 VERDICT = {
-    "version": 3, "decision": "named", "causes": ["weak-joint"], "probabilities": {"weak-joint": 0.6,
+    "version": 4, "decision": "named", "causes": ["weak-joint"], "probabilities": {"weak-joint": 0.6,
     "table-pitch": 0.02},
     "parameters": {"weak-joint": {"factor": _ESTIMATE}}, "location": {"weak-joint": {"joint": ["slab", "block-1"]}},
     "misfit": {"p": 0.01, "where": "slip"}, "excluded_above": {"table-pitch": 1e-4}, "next_test": None,
