@@ -14,7 +14,6 @@ from blockshake.own_files.check import check_file
 from blockshake.quantities import USUAL
 from blockshake.simulation.models import MODELS, solver_of
 from blockshake.simulation.parameter_table import instances
-from blockshake.statistics.scores import FEWEST
 from blockshake.study.config import check_config, load_config
 from blockshake.study.config_checks import typical_structure
 from blockshake.study.remarks import motion_remarks, structure_remarks, unusual_values
@@ -83,7 +82,7 @@ def test_all_models_run_all_cases_of_the_default_study(mapping):
     assert config.samples("nscd-rigid", "configuration-4") == config.ensemble.size
     few = config.samples("nscd-elastic", "configuration-4")
     assert 1 <= few < config.ensemble.size
-    assert config.has_twins("nscd-elastic", "configuration-4") == (few >= FEWEST)
+    assert config.has_twin("nscd-elastic", "configuration-4") == (few >= SURE_FROM)
 
 
 @pytest.mark.parametrize(
