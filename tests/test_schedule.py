@@ -58,9 +58,8 @@ def test_times_are_those_of_one_study_and_its_diagnoses(schedule, tmp_path):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
     times = schedule.measured(tmp_path, "study")
-    assert (
-        times["simulate_batch", ("ls-dem", "one")] == 3.0
-    )  # a sample: 2 s in one batch, 4 s in the other, 3 s as half a twin
+    # a sample: 2 s in one batch, 4 s in the other, 3 s as half of the twin
+    assert times["simulate_batch", ("ls-dem", "one")] == 3.0
     assert times["simulate_batch", ()] == pytest.approx(46.0 / 3.0)
     assert times["simulate_nominal", ()] == 30.0
     assert not [rule for rule, _ in times if rule == "make_envelope"]

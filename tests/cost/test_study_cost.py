@@ -37,8 +37,9 @@ def test_every_run_of_the_default_study_is_counted(monkeypatch):
     runs = samples + 2 * twins + climbs + opened
     # an open test drives from the start of its command on, 2 to 4 ms after its first reading
     seconds = sum(part.seconds for part in parts)
-    # the mean over 20 strata is that of the range within h^2/24 of the relative curvature: 2e-4
-    assert runs * 10.0 - (0.004 + 10.0 * 2e-4) * opened < seconds <= runs * 10.0
+    # the mean of exp(u / 2) over the middles of strata is below that of the range by their width squared over 96
+    strata = (np.log(100.0) / 20) ** 2 / 96.0
+    assert runs * 10.0 - (0.004 + 10.0 * strata) * opened < seconds <= runs * 10.0
 
 
 def test_every_simulated_test_of_a_diagnosis_is_counted(monkeypatch):

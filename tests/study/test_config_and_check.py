@@ -14,6 +14,7 @@ from blockshake.own_files.check import check_file
 from blockshake.quantities import USUAL
 from blockshake.simulation.models import MODELS, solver_of
 from blockshake.simulation.parameter_table import instances
+from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.config import check_config, load_config
 from blockshake.study.config_checks import typical_structure
 from blockshake.study.remarks import motion_remarks, structure_remarks, unusual_values
@@ -261,7 +262,7 @@ def test_check_says_what_a_good_file_is(monkeypatch):
     assert "a motion of 25 s, given as acceleration; peaks along x: " in check_file("alkion")
     said = check_file("config/study.yaml")
     assert said.startswith(
-        "a study of 4 cases by ls-dem (50 samples), nscd-rigid (50 samples), nscd-elastic (3 to 8 samples), "
+        "a study of 4 cases by ls-dem (50 samples), nscd-rigid (50 samples), nscd-elastic (3 to 6 samples), "
     )
 
 
