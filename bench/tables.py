@@ -13,7 +13,7 @@ def as_text(result):
         f"{machine['clock_ghz']['median']:.2f} GHz at work",
         ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in versions.items()),
     ]
-    for part, write in _PARTS.items():
+    for part, write in PARTS.items():
         if part in result:
             lines += ["", *write(result[part])]
     return "\n".join(lines) + "\n"
@@ -113,7 +113,7 @@ def _solved(cost, digits):
     )
 
 
-_PARTS = {
+PARTS = {
     "force_evaluation": _force_evaluation,
     "arithmetic": _arithmetic,
     "simulated_second": _simulated_second,
