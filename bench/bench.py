@@ -16,6 +16,7 @@ import machine
 import nscd_step
 import nscd_walls
 import simulated_second
+import still_stack
 import tables
 import walls
 
@@ -24,7 +25,9 @@ from blockshake.files import write_json
 REPEATS = 5
 BLOCKS = (10, 30, 100, 300, 1000, 2000)
 NSCD_BLOCKS = (10, 30, 100, 300, 1000)
-PARTS = ("force_evaluation", "arithmetic", "simulated_second", "walls", "nscd_step", "nscd_walls")
+PARTS = (
+    "force_evaluation", "arithmetic", "simulated_second", "walls", "nscd_step", "nscd_walls", "still_stack",
+)  # fmt: skip
 
 
 def main(arguments=None):
@@ -79,6 +82,12 @@ def measure(parts, blocks, quick):
         sizes, steps = ((10, 30), ("2", "20")) if quick else (blocks or NSCD_BLOCKS, ())
         result["nscd_walls"] = nscd_walls.summary(
             [_wall(nscd_walls, n_blocks, repeats, *steps) for n_blocks in sizes]
+        )
+    if "still_stack" in parts:
+        result["still_stack"] = (
+            still_stack.measure_still_stack(1.0, ("eight equal cubes",), ("nscd-rigid",))
+            if quick
+            else still_stack.measure_still_stack()
         )
     return result
 

@@ -4,13 +4,13 @@ The runs are the stack under one cycle of sine, and its lowest block alone, whic
 """
 
 from kicked_block import rocking_block
+from motions import NUDGE
 from shaken_stack import SHAKING, shaken_stack
 
 from blockshake.geometry.structure import load_structure
 from blockshake.pages.wording import MICRO, number
 from blockshake.simulation.models import model_of
 from blockshake.solvers.ls_dem.parameters import LsDemParameters, own_stiffness
-from blockshake.study.comparison.twins import NUDGE
 
 _MODEL = "ls-dem"
 _EXACT = 0.0  # spacing of the grid that stands for the exact distance

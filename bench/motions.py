@@ -5,6 +5,7 @@ import numpy as np
 from blockshake.dynamics.motion import ground_motion
 
 FREQUENCY, ACCELERATION = 1.0, 1.5  # Hz, m/s2
+NUDGE = 1e-6  # share by which the motion of a nudged twin is larger
 _ROWS = 1000  # a second; the cubic between them follows the sine to 1e-12 m
 
 

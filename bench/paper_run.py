@@ -15,8 +15,8 @@ from blockshake.log import read_cost
 HEADER = ("part", "runs", "estimated [min]", "taken [min]", "taken over estimated", "digest of the result")
 # logs of the jobs and result, by kind of part
 _KINDS = {
-    "samples": ("simulate_batch/{model}/{case}/*.log", "samples/{model}/{case}.nc"),
-    "twins": ("run_twins/{model}/{case}.log", "twins/{model}/{case}.nc"),
+    "samples": ("simulate_batch/{model}/{case}/[0-9]*.log", "samples/{model}/{case}.nc"),
+    "twin": ("simulate_batch/{model}/{case}/half-step.log", "runs/{model}/{case}/half-step.nc"),
     "calibration": ("compare_open_tests/{model}/{case}.log", "open-tests/{model}/{case}.nc"),
     "fragility": ("climb_samples/{case}/*.log", "fragility/{case}.nc"),
 }

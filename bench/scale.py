@@ -96,7 +96,7 @@ def _samples(folder, samples, batch):
     jobs = _snakemake(folder, "-n", "reports/scale.html", "--config", "samples_per_job=10")
     spent = {"draw_samples": _snakemake(folder, "results/scale/design.csv")}
     runs = Path("results/scale/runs/nscd-rigid/stack")
-    _snakemake(folder, "results/scale/twins/nscd-rigid/stack.nc")  # compiles the model
+    _snakemake(folder, "results/scale/runs/nscd-rigid/stack/half-step.nc")  # compiles the model
     spent["simulate_batch"] = _snakemake(folder, str(runs / f"000-{batch - 1:03d}.nc"))
     _copy_batches(folder / runs, load_design(folder / "results/scale/design.csv"), batch)
     for rule, target in _TARGETS.items():

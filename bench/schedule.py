@@ -20,9 +20,9 @@ from blockshake.files import HOME
 from blockshake.log import read_cost
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.simulation.models import solver_of
+from blockshake.study.ensembles.batch import HALF_STEP
 
 _JOB = re.compile(r"^(?:localrule|rule|checkpoint) (\w+):\n((?:    .+\n)+)", re.MULTILINE)
-_TWINS = 3  # runs that twins cost: one, and one of twice the steps
 _START = 10.0  # s; of a job of which no time is known
 
 
@@ -95,7 +95,9 @@ def _who(log):
 
 
 def _batch(parts):
-    """Model and case of a job, and the number of its samples, from the end of a path of its own."""
+    """Model and case of a job, and the number of its samples, from the end of a path of its own; two are as a twin."""
+    if parts[-1:] == (HALF_STEP,):
+        return parts[:-1], 2
     batch = re.fullmatch(r"(\d+)-(\d+)", parts[-1]) if parts else None
     return (parts[:-1], int(batch[2]) - int(batch[1]) + 1) if batch else (parts, 1)
 
@@ -104,12 +106,13 @@ def timed_study(jobs, config, done, times):
     """Give the jobs of a study their times, from those of the study that was done.
 
     Runs and climbs take as long as there by sample and by step, climbs of a case that did not climb as those that did;
-    twins and open tests as their runs; all other jobs as there, whatever the number of samples.
+    open tests as their runs; all other jobs as there, whatever the number of samples.
     """
     for job in jobs:
-        if job.rule in ("simulate_batch", "run_twins"):
-            runs = _TWINS if job.rule == "run_twins" else job.samples
-            job.seconds = runs * times["simulate_batch", _done(job.key)] * _steps(config, done, *job.key)
+        if job.rule == "simulate_batch":
+            job.seconds = (
+                job.samples * times["simulate_batch", _done(job.key)] * _steps(config, done, *job.key)
+            )
         elif job.rule == "climb_samples":
             (case,) = job.key
             known = times.get((job.rule, job.key))
@@ -120,6 +123,7 @@ def timed_study(jobs, config, done, times):
             runs = config.calibration.size * len(load_campaign(config.case(case).measured.campaign).open)
             # the records are as long as the windows of the study that was done
             steps = done.models[solver_of(model).name].time_step / config.models[model].time_step
+            steps *= config.calibration.steps(config.ensemble.distributions, solver_of(model))
             job.seconds = runs * times["simulate_batch", _done(job.key)] * steps
         else:
             job.seconds = times.get((job.rule, job.key), times.get((job.rule, ()), _START))

@@ -3,6 +3,7 @@
 import textwrap
 
 import numpy as np
+from motions import NUDGE
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.geometry.structure import load_structure
@@ -10,7 +11,6 @@ from blockshake.measurement.sensors.markers import NOISE, block_markers, driven_
 from blockshake.pages.wording import number, percent, share_words
 from blockshake.simulation.simulate import simulate
 from blockshake.study.comparison.comparison import TOLD_APART_BY
-from blockshake.study.comparison.twins import NUDGE
 from blockshake.study.ensembles.ensemble import relative_to_slab
 
 CONFIGURATIONS = ("configuration-1", "configuration-2", "configuration-3", "configuration-4")

@@ -1,6 +1,7 @@
 """The bench's results as text."""
 
 import force_evaluation
+import still_stack
 import walls
 
 
@@ -12,7 +13,7 @@ def as_text(result):
         f"{machine['clock_ghz']['median']:.2f} GHz at work",
         ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in versions.items()),
     ]
-    for part, write in _PARTS.items():
+    for part, write in PARTS.items():
         if part in result:
             lines += ["", *write(result[part])]
     return "\n".join(lines) + "\n"
@@ -93,6 +94,17 @@ def _nscd_walls(result):
     yield f"  a step grows as blocks^{result['exponent']:.2f}"
 
 
+def _still_stack(result):
+    yield f"At rest for {still_stack.DURATION:g} s: largest drift and sinking [um], and turn [urad], of any block"
+    yield f"  {'':<34}{'program':<20}{'drift':<12}{'sink':<12}turn"
+    for case, programs in result.items():
+        for program, found in programs.items():
+            told = (
+                "".join(f"{1e6 * one:<12.2g}" for one in found.values()) if isinstance(found, dict) else found
+            )
+            yield f"  {case:<34}{program:<20}{told}".rstrip()
+
+
 def _solved(cost, digits):
     """Time of a step and how it was solved."""
     return (
@@ -101,11 +113,12 @@ def _solved(cost, digits):
     )
 
 
-_PARTS = {
+PARTS = {
     "force_evaluation": _force_evaluation,
     "arithmetic": _arithmetic,
     "simulated_second": _simulated_second,
     "walls": _walls,
     "nscd_step": _nscd_step,
     "nscd_walls": _nscd_walls,
+    "still_stack": _still_stack,
 }

@@ -30,7 +30,7 @@ def result(tmp_path_factory):
 def test_the_smallest_run_reports_every_part(result):
     assert set(result) == {
         "machine", "versions", "force_evaluation", "arithmetic", "simulated_second", "walls", "nscd_step",
-        "nscd_walls", "table",
+        "nscd_walls", "still_stack", "table",
     }  # fmt: skip
     assert set(result["machine"]) == {"processor", "instruction_set", "cores", "system", "clock_ghz"}
     assert {"python", "numba", "llvmlite", "numpy", "blockshake", "kernel_source_digest"} <= set(
@@ -40,7 +40,14 @@ def test_the_smallest_run_reports_every_part(result):
         "sizes", "spread_by_block", "spread_by_joint", "exponent", "memory_kib_per_block"
     }  # fmt: skip
     assert set(result["nscd_walls"]) == {"sizes", "exponent"}
-    for heading in ("node evaluation", "core's peak", "simulated second", "Bonded walls", "Nonsmooth"):
+    for heading in (
+        "node evaluation",
+        "core's peak",
+        "simulated second",
+        "Bonded walls",
+        "Nonsmooth",
+        "At rest",
+    ):
         assert heading in result["table"]
 
 

@@ -10,7 +10,7 @@ TOLD = """\
 part                                runs  CPU min
 samples of configuration-1, ls-dem  20    2.0
 samples of configuration-2, ls-dem  20    1.0
-twins of configuration-1, ls-dem    3     0.2
+twin of configuration-1, ls-dem     2     0.2
 calibration of configuration-1, nscd-rigid  200   1.0
 jobs beside their runs              30    10.0
 config/paper.yaml: about 14 CPU minutes on this machine, 7 min on 2 cores
@@ -32,9 +32,9 @@ def study(tmp_path):
     logs = tmp_path / "logs" / "paper"
     _write(logs / "estimate.txt", TOLD)
     samples = logs / "simulate_batch" / "ls-dem" / "configuration-1"
-    _log(samples / "0.log", cpu=60.0, begin=1000.0, end=1200.0)
-    _log(samples / "1.log", cpu=90.0, begin=1100.0, end=1300.0)
-    _log(logs / "run_twins" / "ls-dem" / "configuration-1.log", cpu=24.0, begin=1320.0, end=1345.0)
+    _log(samples / "000-009.log", cpu=60.0, begin=1000.0, end=1200.0)
+    _log(samples / "010-019.log", cpu=90.0, begin=1100.0, end=1300.0)
+    _log(samples / "half-step.log", cpu=24.0, begin=1320.0, end=1345.0)
     _log(
         logs / "compare_open_tests" / "nscd-rigid" / "configuration-1.log", cpu=30.0, begin=9000.0, end=9135.0
     )
@@ -64,15 +64,15 @@ def test_nothing_stands_there_without_an_estimate(paper_run, study):
 def test_finished_parts_stand_beside_their_estimate(paper_run, study):
     results = study / "results" / "paper"
     _write(results / "samples" / "ls-dem" / "configuration-1.nc", "samples")
-    _write(results / "twins" / "ls-dem" / "configuration-1.nc", "twins")
+    _write(results / "runs" / "ls-dem" / "configuration-1" / "half-step.nc", "twin")
     _write(results / "open-tests" / "nscd-rigid" / "configuration-1.nc", "open tests")
-    samples, twins, calibration, whole = paper_run.paper_rows(study)
+    samples, twin, calibration, whole = paper_run.paper_rows(study)
     assert samples[:5] == ("samples of configuration-1, ls-dem", "20", "2.0", "2.5", "1.25")
     # 0.2 min may be 0.15 or 0.25: no ratio
-    assert twins[:5] == ("twins of configuration-1, ls-dem", "3", "0.2", "0.4", "")
+    assert twin[:5] == ("twin of configuration-1, ls-dem", "2", "0.2", "0.4", "")
     assert calibration[:5] == ("calibration of configuration-1, nscd-rigid", "200", "1.0", "0.5", "0.50")
-    assert len({samples[5], twins[5], calibration[5]}) == 3
-    assert whole == ("CPU time of all of these", 223, "3.2", "3.4", "1.06", "")
+    assert len({samples[5], twin[5], calibration[5]}) == 3
+    assert whole == ("CPU time of all of these", 222, "3.2", "3.4", "1.06", "")
     assert len(samples) == len(paper_run.HEADER)
 
 

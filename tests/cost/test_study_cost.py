@@ -2,6 +2,7 @@
 
 import sys
 
+import numpy as np
 import pytest
 
 from blockshake.cost import diagnosis_cost, study_cost
@@ -25,15 +26,20 @@ def test_every_run_of_the_default_study_is_counted(monkeypatch):
     )
     monkeypatch.setattr(study_cost, "diagnosis_cost", lambda folder, effort, tried: [])
     monkeypatch.setattr(study_cost, "planned_jobs", lambda command: CostPart("jobs", 0, 0.0))
-    samples = 2 * 4 * 50 + 2 * (8 + 8 + 8 + 3)
-    twins = 4 * 4  # of every model and case
+    samples = 2 * 4 * 50 + 2 * (6 + 6 + 6 + 3)
+    twins = 4 * 4 - 2  # of every model and case, but for the two that run three samples
     climbs = 2 * 20 * 23  # two cases, 20 samples, 0.5 to 6 by 0.25
-    opened = 30 * (4 + 3) * 7  # four cases by LS-DEM, three by rigid blocks; seven open tests each
+    # four cases by LS-DEM, one by rigid blocks, seven open tests each; steps go with the root of the stiffness, evenly
+    # drawn in its logarithm from 0.03 to 3
+    softer = 2.0 * (np.sqrt(3.0) - np.sqrt(0.03)) / np.log(100.0)
+    opened = 20 * (4 * softer + 1) * 7
     parts = study_cost.study_cost("config/study.yaml")
-    runs = samples + 3 * twins + climbs + opened
+    runs = samples + 2 * twins + climbs + opened
     # an open test drives from the start of its command on, 2 to 4 ms after its first reading
     seconds = sum(part.seconds for part in parts)
-    assert runs * 10.0 - 0.004 * opened < seconds <= runs * 10.0
+    # the mean of exp(u / 2) over the middles of strata is below that of the range by their width squared over 96
+    strata = (np.log(100.0) / 20) ** 2 / 96.0
+    assert runs * 10.0 - (0.004 + 10.0 * strata) * opened < seconds <= runs * 10.0
 
 
 def test_every_simulated_test_of_a_diagnosis_is_counted(monkeypatch):

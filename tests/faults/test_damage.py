@@ -37,14 +37,13 @@ def finished(whole, tmp_path):
 def test_damaged_units_are_made_anew_and_the_others_are_not(finished):
     results = finished.folder / "results"
     units = sorted((results / "store").glob("[!.]*.nc"))
-    twins = sorted((results / "small" / "twins").rglob("*.nc"))
-    batches = [*sorted((results / "small" / "runs").rglob("*.nc")), *twins]
+    batches = sorted((results / "small" / "runs").rglob("*.nc"))
     before = {path: xr.load_dataset(path) for path in batches}
     for damage, unit in zip(DAMAGES, units, strict=False):
         damage(unit)
         DONE["study: finished unit cut, altered or exchanged"] += 1
-    names = [str(path.relative_to(finished.folder)) for path in twins]
-    answer = finished.snakemake("configuration-1", *names, "-R", "simulate_batch", "run_twins")
+    names = [str(path.relative_to(finished.folder)) for path in batches]
+    answer = finished.snakemake("configuration-1", *names, "-R", "simulate_batch")
     assert answer.returncode == 0, answer.stdout + answer.stderr
     assert answer.stdout.count(", simulated:") == len(DAMAGES)
     assert answer.stdout.count(", kept:") == len(units) - len(DAMAGES)

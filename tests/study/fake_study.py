@@ -11,9 +11,8 @@ from blockshake.files import write_dataset, write_json, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.motion.joints import find_joints
 from blockshake.measurement.sensors.markers import noisy_reading
-from blockshake.statistics.scores import FEWEST
+from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.comparison.comparison import compare_models
-from blockshake.study.comparison.twins import TWINS
 from blockshake.study.ensembles.case_input import measured_input
 from blockshake.study.ensembles.coverage import coverage
 from blockshake.study.ensembles.ensemble import join_batches, run_as_sample, sample_figures
@@ -164,8 +163,9 @@ class FakeStudy:
                 end(runs[2], "collapsed", COLLAPSE_REASON, 1.0)
                 end(runs[4], "not-converged", "2.0 % of the steps ended above a residual", self.time[-1])
             ensemble = ensembles[model] = ensemble_of(runs, self.design)
-            if count >= FEWEST:
-                twins[model] = self.twins(structure, model)
+            if count >= SURE_FROM:
+                twin = self.run(structure, model, 1.05 * STRENGTH[model])
+                twins[model] = ensemble_of([twin], self.design)
             for kind, result in (
                 ("envelopes", envelope(ensemble, 0.4)),
                 ("samples", sample_figures(ensemble)),
@@ -179,14 +179,6 @@ class FakeStudy:
 
         differences = compare_models(ensembles, twins, (test, 1e-4))
         write_dataset(self.results / "differences" / f"{name}.nc", differences)
-
-    def twins(self, structure, model):
-        """Twins of the first sample that are 1 and 5 % stronger."""
-        runs = [self.run(structure, model, factor * STRENGTH[model]) for factor in (1.01, 1.05)]
-        found = xr.concat(
-            [run[["marker_displacement"]] for run in runs], dim="twin", coords="minimal", compat="override"
-        )
-        return found.assign_coords(twin=list(TWINS)).assign_attrs(sample=0)
 
     def run(self, structure, model, strength):
         """A run whose blocks sway the more the higher they stand; peaks are ``strength`` times the height in cm."""

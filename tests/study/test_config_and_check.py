@@ -14,7 +14,7 @@ from blockshake.own_files.check import check
 from blockshake.quantities import USUAL
 from blockshake.simulation.models import MODELS, solver_of
 from blockshake.simulation.parameter_table import instances
-from blockshake.statistics.scores import FEWEST
+from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.config import check_config, load_config
 from blockshake.study.config_checks import typical_structure
 from blockshake.study.remarks import motion_remarks, structure_remarks, unusual_values
@@ -83,7 +83,7 @@ def test_all_models_run_all_cases_of_the_default_study(mapping):
     assert config.samples("nscd-rigid", "configuration-4") == config.ensemble.size
     few = config.samples("nscd-elastic", "configuration-4")
     assert 1 <= few < config.ensemble.size
-    assert config.has_twins("nscd-elastic", "configuration-4") == (few >= FEWEST)
+    assert config.has_twin("nscd-elastic", "configuration-4") == (few >= SURE_FROM)
 
 
 @pytest.mark.parametrize(
@@ -205,7 +205,7 @@ def test_check_says_what_a_good_file_is(monkeypatch):
     assert "a motion of 25 s, given as acceleration; peaks along x: " in check("alkion")
     said = check("config/study.yaml")
     assert said.startswith(
-        "a study of 4 cases by ls-dem (50 samples), nscd-rigid (50 samples), nscd-elastic (3 to 8 samples), "
+        "a study of 4 cases by ls-dem (50 samples), nscd-rigid (50 samples), nscd-elastic (3 to 6 samples), "
     )
 
 

@@ -10,7 +10,7 @@ from blockshake.files import PACKAGE
 from blockshake.simulation.models import MODELS
 from blockshake.sources import kernel_sources, script_sources
 
-BY_MODEL = ("simulate_batch", "run_twins", "simulate_nominal")
+BY_MODEL = ("simulate_batch", "simulate_nominal")
 
 
 @pytest.mark.parametrize("script", sorted(path.stem for path in SCRIPTS.glob("*.py")))

@@ -134,9 +134,13 @@ def runs_of(model, case, **others):
 
 
 def sample_runs(wildcards):
-    """Those of the samples of an ensemble."""
+    """Those of the samples of an ensemble, or of the twin of its first one."""
     case, rate = case_definition(wildcards), config["output_rate"]
-    return runs_of(wildcards.model, case, output_rate=rate)
+    runs = runs_of(wildcards.model, case, output_rate=rate)
+    if wildcards.batch == HALF_STEP:
+        step = 0.5 * runs["settings"]["time_step"]
+        runs["settings"] = {**runs["settings"], "time_step": step}
+    return runs
 
 
 def batch_ids(count):
@@ -166,14 +170,12 @@ def batches_of_models(wildcards):
 
 
 def files_of_models(wildcards):
-    """These, and the twins of every model that has any."""
-    twins = "results/{study}/twins/{model}/{case}.nc"
+    """These, and the twin of every model that has one."""
+    folder, case = f"results/{wildcards.study}/runs", wildcards.case
     return batches_of_models(wildcards) | {
-        f"twins {model}": twins.format(
-            study=wildcards.study, model=model, case=wildcards.case
-        )
+        f"twin {model}": f"{folder}/{model}/{case}/{HALF_STEP}.nc"
         for model in MODELS
-        if CHECKED.has_twins(model, wildcards.case)
+        if CHECKED.has_twin(model, case)
     }
 
 

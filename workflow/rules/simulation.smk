@@ -11,7 +11,7 @@ rule compile_kernels:
 
 
 rule simulate_batch:
-    """Some samples of a case by a model; a single sample is a batch whose first is its last.
+    """Some samples of a case by a model, or the twin of the first one; a single sample is a batch whose first is its last.
 
     Each finished sample goes at once to the store, from which a killed batch resumes: the store is
     no declared output, because Snakemake deletes those of a killed job.
@@ -34,25 +34,3 @@ rule simulate_batch:
         source=lambda wildcards: source_of("simulate_batch", wildcards.model),
     script:
         "../scripts/simulate_batch.py"
-
-
-rule run_twins:
-    """The first sample a little stronger and at half the step, and one block alone: the floor of a model's numerics."""
-    input:
-        unpack(run_files),
-    output:
-        "results/{study}/twins/{model}/{case}.nc",
-    log:
-        "logs/{study}/run_twins/{model}/{case}.log",
-    conda:
-        "../envs/blockshake.yaml"
-    resources:
-        runtime=240,
-    params:
-        runs=sample_runs,
-        seed=lookup(dpath="ensemble/seed", within=config),
-        store="results/store",
-        said=said(run_files),
-        source=lambda wildcards: source_of("run_twins", wildcards.model),
-    script:
-        "../scripts/run_twins.py"

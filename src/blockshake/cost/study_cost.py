@@ -13,7 +13,7 @@ from blockshake.measurement.motion.measured_base import record_start
 from blockshake.simulation.models import solver_of
 from blockshake.study.config import load_config
 
-_TWINS = 3  # runs that twins cost: one of the usual step, one of half
+_TWIN = 2  # runs that a twin costs, of half the step
 
 
 def study_cost(path):
@@ -34,7 +34,7 @@ def study_cost(path):
 
     Notes
     -----
-    Twins count as one run and one of twice the steps; the fragility with as many runs as it may need; a diagnosis
+    A twin counts as two runs; the fragility with as many runs as it may need; a diagnosis
     without the runs of a cause, which it has only where it finds one.
     """
     config = load_config(path)
@@ -64,13 +64,14 @@ def _runs(config, model, case):
     """Runs of a case by a model, by the part of the study: their number, and the whole motions in them."""
     samples = config.samples(model, case.name)
     runs = {f"samples of {case.name}, {model}": (samples, samples)}
-    if config.has_twins(model, case.name):
-        runs[f"twins of {case.name}, {model}"] = _TWINS, _TWINS
+    if config.has_twin(model, case.name):
+        runs[f"twin of {case.name}, {model}"] = _TWIN, _TWIN
     asked = config.calibration
     if asked is not None and case.name in asked.cases.get(model, ()):
         # a test is simulated for its record where that is shorter than the case
         shares = [min(record / case.duration, 1.0) for record in _open_records(case)]
-        runs[f"calibration of {case.name}, {model}"] = asked.size * len(shares), asked.size * sum(shares)
+        steps = asked.size * asked.steps(config.ensemble.distributions, solver_of(model))
+        runs[f"calibration of {case.name}, {model}"] = asked.size * len(shares), steps * sum(shares)
     climbs = config.fragility
     if climbs is not None and climbs.model == model and case.name in climbs.cases:
         count = climbs.size * len(config.ladder.scales)

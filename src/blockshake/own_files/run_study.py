@@ -190,7 +190,7 @@ class _Progress:
 
 def _finished(folder):
     """Samples of the batches in a folder, whose names are such as ``010-019.nc``."""
-    batches = (path.stem.split("-") for path in folder.glob("*-*.nc"))
+    batches = (path.stem.split("-") for path in folder.glob("[0-9]*-*.nc"))
     return {sample for first, last in batches for sample in range(int(first), int(last) + 1)}
 
 

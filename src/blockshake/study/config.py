@@ -11,7 +11,7 @@ from blockshake.errors import InputError, faults_of
 from blockshake.files import load_yaml
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.models import solver_of
-from blockshake.statistics.scores import FEWEST
+from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.analyses import ANALYSES
 from blockshake.study.calibration.settings import CalibrationSettings
 from blockshake.study.config_checks import check_named
@@ -142,7 +142,8 @@ class StudyCase(Strict):
     samples: dict[str, Count] = Field(
         {},
         description="fewer samples than the ensemble's, at least 1, by model: the first rows of the design. With fewer "
-        "than three the case has no twins, distances, widths or scores of that model",
+        "than three the case has no distances, widths or scores of that model, and with fewer than six no limits of "
+        "them and no twin",
     )
     measured: Measured | None = Field(None, description="none: compared with no test")
     input: Literal[MEASURED, COMMANDED] = Field(
@@ -297,9 +298,9 @@ class StudyConfig(Strict):
         """Number of samples of a case by a model."""
         return min(self.case(case).samples.get(model, self.ensemble.size), self.ensemble.size)
 
-    def has_twins(self, model, case):
-        """Whether the first sample of a case by a model is run again for the floor of the model's numerics."""
-        return self.samples(model, case) >= FEWEST
+    def has_twin(self, model, case):
+        """Whether the first sample of a case by a model is run again at half the step, for the floor of numerics."""
+        return self.samples(model, case) >= SURE_FROM
 
 
 def load_config(path):

@@ -90,6 +90,15 @@ def test_rigid_motions_have_no_strain_energy():
     assert (rigid.T @ (M @ rigid))[3:, 3:] == pytest.approx(np.diag(inertia))
 
 
+@pytest.mark.parametrize("spacing", [0.2, 0.4, 0.5, 0.8, 10.0])
+def test_the_lattice_is_its_own_mirror_image(spacing):
+    """Five bricks along an edge have no plane in the middle: a lattice on one beside it would lean the block."""
+    size = (1.0, 0.6, 0.8)
+    for planes, edge in zip(surface_lattice(box_mesh(size, 0.2), spacing).lines, size, strict=True):
+        assert planes == pytest.approx(-planes[::-1], abs=1e-12)
+        assert planes[-1] - planes[0] == pytest.approx(edge)
+
+
 @pytest.mark.parametrize("spacing", [0.2, 0.4, 0.8, 10.0])
 def test_nodes_between_follow_a_linear_displacement_of_the_lattice(spacing):
     mesh = box_mesh(SIZE, 0.2)

@@ -29,6 +29,15 @@ def test_a_column_shortens_as_hooke_says(stone, tower, deform):
     assert run.position[-1] == pytest.approx(run.position[0], abs=1e-12)
 
 
+def test_a_cube_sinks_upright(stone, deform):
+    """Five bricks an edge and points 0.5 m apart, which no lattice of every other node has in its middle."""
+    cube = [{"name": "b", "shape": "cube", "position": [0.0, 0.0, 0.5]}]
+    structure = stone(cube, shapes={"cube": {"box": [1.0, 1.0, 1.0]}})
+    run = deform(structure, 0.01, mesh_size=0.2, contact_spacing=0.5)
+    assert run.position[-1, 1, :2] == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert run.orientation[-1, 1, 1:] == pytest.approx(np.zeros(3), abs=1e-12)
+
+
 def test_joints_carry_the_weight_above(stone, tower, deform):
     structure = stone(tower(3))
     run = deform(structure, 0.02, mesh_size=0.4, contact_spacing=0.8)

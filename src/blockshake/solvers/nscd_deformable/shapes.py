@@ -64,9 +64,10 @@ def surface_lattice(mesh, spacing):
 
 
 def _planes(edge, count, spacing):
-    """Planes of the mesh across an edge that the lattice takes."""
+    """Planes of the mesh across an edge that the lattice takes, their own mirror image: else a block leans."""
     parts = min(count, max(1, int(np.ceil(edge / spacing - 1e-9))))
-    return np.unique(np.round(np.linspace(0, count, parts + 1)).astype(np.int64))
+    planes = np.round(np.linspace(0, count, parts + 1)).astype(np.int64)
+    return np.union1d(planes, count - planes)
 
 
 def _hats(planes, count):

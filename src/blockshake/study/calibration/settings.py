@@ -82,6 +82,11 @@ class CalibrationSettings(Strict):
         "0.2 to 1, of steel 0.1 to 0.8, restitution 0.05 to 0.95, stiffness 0.03 to 3, hollow 1e-5 to 3e-3",
     )
 
+    def steps(self, variables, model):
+        """Mean number of steps of a sample by a `Model`, over that of the usual stiffness [1]."""
+        springs = self.ranges_of(variables).get(STIFFNESS) if model.calibrated else None
+        return float(np.sqrt(springs.stratum_medians(self.size)).mean()) if springs else 1.0
+
     def ranges_of(self, variables):
         """Ranges of all that is calibrated, by name: of every friction among the ``variables``, and of the others."""
         usual = {

@@ -19,7 +19,6 @@ from blockshake.statistics.scores import (
     mean_width,
 )
 from blockshake.store import load_made
-from blockshake.study.comparison.twins import TWINS
 from blockshake.study.comparison.two_levels import two_levels
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.ensemble import ALONG_X, POSES, describe, join_batches, relative_to_slab
@@ -43,8 +42,8 @@ _DESCRIBED = {
     "history_difference": ("mean difference of the same sample by both models, median over the samples", "m"),
     "parting_time": ("first time that the same sample by both models differs, median over the samples", "s"),
     "common": ("samples that both models ran", "1"),
-    "floor": ("mean difference of a sample from its twin", "m"),
-    "horizon": ("first time that a sample differs from its twin", "s"),
+    "floor": ("mean difference of a sample from its twin of half the step", "m"),
+    "horizon": ("first time that a sample differs from its twin of half the step", "s"),
     "mean_peak": ("mean of the largest displacement of any marker along x relative to the slab", "m"),
     "two_level_peak": ("the same mean with rigid NSCD as a control variate", "m"),
     "coefficient": ("of the control variate", "1"),
@@ -57,12 +56,12 @@ _DESCRIBED = {
 def compare_case(batches, twins, named, base):
     """`compare_models` of a case, from files.
 
-    ``batches``: files of its samples by model, of which the first `MOST` are compared; ``twins``: file from
-    `simulate_twins` by model, or None; ``named`` and ``base`` as of `coverage_of_case`, None where the case is
+    ``batches``: files of its samples by model, of which the first `MOST` are compared; ``twins``: file of the batch
+    `HALF_STEP` by model, or None; ``named`` and ``base`` as of `coverage_of_case`, None where the case is
     compared with no test.
     """
     ensembles = {model: first_samples(files) for model, files in batches.items()}
-    loaded = {model: load_made(path) for model, path in twins.items() if path}
+    loaded = {model: first_samples([path]) for model, path in twins.items() if path}
     return compare_models(ensembles, loaded, measured_on_clock(named, base) if named else None)
 
 
@@ -86,7 +85,7 @@ def compare_models(ensembles, twins, measured):
     ensembles : dict of str to xarray.Dataset
         By model, from `join_batches`.
     twins : dict of str to xarray.Dataset
-        By model, from `simulate_twins`, of a sample that is among those of the model; any model may be missing.
+        By model, from `join_batches`: a sample of the model once more, at half the time step; any may be missing.
     measured : tuple of (xarray.Dataset, float) or None
         Readings on the models' clock and the markers' noise, from `measured_on_clock`.
 
@@ -100,9 +99,9 @@ def compare_models(ensembles, twins, measured):
         ``width_change(model, marker)``, NaN for all others. Of two
         models, ``other`` the second: ``distance``, the energy distance of the ensembles, with ``distance_chance``;
         ``history_difference`` and ``parting_time`` of the ``common`` samples. Of the numerics, NaN without twins:
-        ``floor`` and ``horizon(model, twin)``. Against the measured curves, NaN without any: ``score(model)``. Of
-        models with fewer samples than rigid NSCD those of `two_levels`. Limits of 95 %, ``NAME_interval(bound, ...)``:
-        of medians by order statistics, of width and score by bootstrap. NaN where an ensemble has fewer than three
+        ``floor`` and ``horizon(model)``. Against the measured curves, NaN without any: ``score(model)``. Of models
+        with fewer samples than rigid NSCD those of `two_levels`. Limits of 95 %, ``NAME_interval(bound, ...)``: of
+        medians by order statistics, of width and score by bootstrap. NaN where an ensemble has fewer than three
         samples; times infinite where nothing parts.
     """
     models = list(ensembles)
@@ -148,13 +147,10 @@ def _blocks(ensemble):
     return [str(name) for name in ensemble["marker"].values if name != slab]
 
 
-def _curves(ensemble, displacement=None):
-    """Displacement of the blocks along x relative to the slab, float64 (..., n_times, n_markers) [m].
-
-    ``displacement``: of another run with the ensemble's markers; by default that of the ensemble's samples.
-    """
-    moved = ensemble["marker_displacement"] if displacement is None else displacement
-    along = relative_to_slab(moved.sel(axis="x", drop=True), ensemble.attrs["slab_marker"])
+def _curves(ensemble):
+    """Displacement of the blocks along x relative to the slab, float64 (n_samples, n_times, n_markers) [m]."""
+    moved = ensemble["marker_displacement"].sel(axis="x", drop=True)
+    along = relative_to_slab(moved, ensemble.attrs["slab_marker"])
     return along.sel(marker=_blocks(ensemble)).transpose(..., "time", "marker").to_numpy()
 
 
@@ -263,22 +259,19 @@ def _upper_median(times):
 
 
 def _numerics(counted, twins, limit):
-    """Floor and horizon of each model's numerics, NaN where the sample failed that has the twins."""
+    """Floor and horizon of each model's numerics, NaN without a twin, or where it or its sample failed."""
     models = list(counted)
-    floor, horizon = np.full((2, len(models), len(TWINS)), np.nan)
+    floor, horizon = np.full((2, len(models)), np.nan)
     for row, model in enumerate(models):
-        ensemble = counted[model]
-        if model not in twins or twins[model].attrs["sample"] not in ensemble["sample"].values:
+        if model not in twins:
             continue
-        sample = _curves(ensemble.sel(sample=twins[model].attrs["sample"]))
-        for column, twin in enumerate(TWINS):
-            other = _curves(ensemble, twins[model]["marker_displacement"].sel(twin=twin))
-            floor[row, column] = mean_differences(sample[None], other[None]).mean()
-            horizon[row, column] = parting_time(ensemble["time"].to_numpy(), sample, other, limit)
-    return xr.Dataset(
-        {"floor": (("model", "twin"), floor), "horizon": (("model", "twin"), horizon)},
-        {"model": models, "twin": list(TWINS)},
-    )
+        twin = counted_samples(twins[model])
+        shared = np.intersect1d(twin["sample"], counted[model]["sample"])
+        if shared.size:
+            sample, other = (_curves(one.sel(sample=shared)) for one in (counted[model], twin))
+            floor[row] = mean_differences(sample, other).mean()
+            horizon[row] = parting_time(twin["time"].to_numpy(), sample[0], other[0], limit)
+    return xr.Dataset({"floor": ("model", floor), "horizon": ("model", horizon)}, {"model": models})
 
 
 def score_parts(ensemble, measured):

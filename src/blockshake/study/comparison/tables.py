@@ -65,7 +65,7 @@ def pairs_table(content):
         found = case.differences
         for own, other in combinations(found["model"].values, 2):
             at = found.sel(model=own, other=other)
-            floors = [larger_floor(found, model) for model in (own, other)]
+            floors = [found["floor"].sel(model=model) for model in (own, other)]
             rows.append((
                 case.name, f"{model_label(own)} and {model_label(other)}", in_millimetres(at["distance"]),
                 in_millimetres(at["distance_chance"]), _with_limits(at, "history_difference", in_millimetres),
@@ -75,8 +75,8 @@ def pairs_table(content):
         "Pairs of models. Distance: of the ensembles; chance: the distance that 95 of 100 random divisions of the same "
         "samples into two ensembles stay below. Difference: of the same sample by both models, mean over times and "
         "blocks, median over the n samples that both ran, with limits by order statistics. Floor: the same difference "
-        "of one sample from its twin by each of the two models, the larger of two twins. Parting: when the same sample "
-        f"by both models is first told apart, median. {MISSING}: too few samples, or no twins.",
+        "of one sample from its twin, at half the time step, by each of the two models. Parting: when the same sample "
+        f"by both models is first told apart, median. {MISSING}: too few samples, or no twin.",
         (
             "Case", "Models", "Distance [mm]", "Chance [mm]", "Difference [mm]", "n", "Floors [mm]", "Parting [s]",
         ),
@@ -163,11 +163,6 @@ def scores_table(content):
         f"none with fewer than {SURE_FROM} samples. {MISSING}: fewer than three samples.",
         ("Case", "Curves", *map(model_label, models), "Lowest"), tuple(rows), "ll" + "r" * len(models) + "l",
     )  # fmt: skip
-
-
-def larger_floor(found, model):
-    """Larger of the floors of a model's twins [m]; NaN without twins."""
-    return float(found["floor"].sel(model=model).max())
 
 
 def in_millimetres(value):

@@ -15,6 +15,8 @@ from blockshake.study.ensembles.ensemble import DECIMALS, run_as_sample
 from blockshake.study.sampling.sample_parameters import sample_parameters
 from blockshake.study.sampling.sample_table import load_design
 
+HALF_STEP = "half-step"  # batch of the twin: the first sample at half the time step
+
 
 class CaseRuns(NamedTuple):
     """How a case is simulated by a model.
@@ -93,10 +95,10 @@ def simulate_samples(runs, motions, rows, store):
 def batch_rows(batch, files):
     """Sampled values of a batch, columns the dotted names, contact stiffness beside them where the model has any.
 
-    ``batch``: first and last sample, such as ``010-019``; ``files``: attributes ``design`` and ``stiffness``, CSV
-    tables by sample, the latter empty without contact stiffness.
+    ``batch``: first and last sample, such as ``010-019``, or `HALF_STEP`; ``files``: attributes ``design`` and
+    ``stiffness``, CSV tables by sample, the latter empty without contact stiffness.
     """
-    first, last = (int(part) for part in batch.split("-"))
+    first, last = (0, 0) if batch == HALF_STEP else map(int, batch.split("-"))
     tables = [load_design(path) for path in (files.design, files.stiffness) if path]
     rows = pd.concat(tables, axis=1)
     if last not in rows.index:

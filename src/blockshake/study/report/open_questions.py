@@ -137,8 +137,8 @@ def unknown(content):
         )
     if chaotic := _chaotic(cases):
         sentences.append(
-            f"Single runs after {'; '.join(chaotic)}: from then on a change of the motion by a millionth, or half the "
-            "time step, tells a run from its twin. Medians and bands remain."
+            f"Single runs after {'; '.join(chaotic)}: from then on half the time step tells a run from its twin. "
+            "Medians and bands remain."
         )
     unanswered = [
         parameter_label(name)
@@ -173,10 +173,10 @@ def _by_model(cases, count):
 
 
 def _chaotic(cases):
-    """Models with the earliest time at which their twins part within the window [s], in words by case."""
+    """Models with the time at which a sample and its twin part within the window [s], in words by case."""
     by_case = []
     for case in cases:
-        horizons = case.differences["horizon"].min("twin")
+        horizons = case.differences["horizon"]
         parted = [
             f"{model_label(model)} {number(horizons.sel(model=model))} s"
             for model in horizons["model"].values

@@ -31,6 +31,20 @@ def test_the_skin_changes_speed_and_never_results(rocked, skin):
     np.testing.assert_allclose(short.orientation, long.orientation, atol=rounding)
 
 
+def test_a_pair_that_sleeps_wakes_before_it_touches(make_structure, run_ls_dem):
+    """Blocks 2 mm apart sleep for the first millimetre; with a skin of 20 m such a gap is too small for sleep."""
+    bodies = [
+        {"name": "still", "shape": "block", "position": [0.0, 0.0, 0.8]},
+        {"name": "coming", "shape": "block", "position": [-0.802, 0.0, 0.8], "velocity": [0.4, 0.0, 0.0]},
+    ]
+    asleep, awake = (run_ls_dem(make_structure(bodies), 0.05, rate=1000, skin=skin) for skin in (0.005, 20.0))
+    still = asleep.position[:, 1, 0]
+    assert abs(still[4]) < 1e-6 < 1e-4 < abs(still[-1])  # at 0.4 m/s the gap lasts 5 ms and more
+    np.testing.assert_allclose(
+        asleep.position, awake.position, atol=1e-9
+    )  # sums in other groups of eight, as above
+
+
 @pytest.mark.parametrize("order", [(0, 1), (1, 0)])
 def test_a_narrow_body_between_the_nodes_of_a_wide_one_is_found(order, make_structure, run_ls_dem):
     """Facts.md 3.4: only the narrow body's nodes see the contact, whichever comes first in the file."""

@@ -6,12 +6,13 @@ import numpy as np
 
 from blockshake.geometry.overlap import find_pairs
 from blockshake.geometry.rotations import rotation_matrix_into
-from blockshake.jit import borrowing_kernel, inner_kernel, kernel
+from blockshake.jit import borrowing_kernel, inner_kernel, kernel, separate_kernel
 from blockshake.solvers.ls_dem.contact.joint_areas import joint_areas_into
 from blockshake.solvers.ls_dem.contact.located_nodes import locate_nodes_into
 from blockshake.solvers.ls_dem.contact.packets import (
     CLOSED,
     FAR_AWAY,
+    HELD,
     LANES,
     LOCATED,
     PACKET,
@@ -24,6 +25,9 @@ from blockshake.solvers.ls_dem.progress import add_joints, find_joint
 from blockshake.solvers.ls_dem.surfaces import level_set
 
 _FRESH = -2  # no key begins so
+# A pair sleeps until it has come nearer by this share of its gap, and never with a gap below a share of the skin: it
+# then wakes before the step in which it touches, also at a metre a second
+_SLEEPS_FOR, _LEAST_GAP = 0.5, 0.05
 
 
 class Candidates(NamedTuple):
@@ -35,6 +39,11 @@ class Candidates(NamedTuple):
     ``node`` int64 (n_packets * LANES,): index in `Surfaces`, -1 for filling. ``packets`` float64 (n_packets, PACKET):
     see `packets`. ``located`` float64 (packets of the pair with most, LOCATED): workspace of the pair at hand.
     ``position`` and ``orientation``: poses for which the list was made.
+
+    A pair of which no node can touch yet sleeps: its nodes are not followed, and in a wall with open joints not even
+    read. ``reach`` (n_pairs,): way of its two bodies towards each other below which it does [m]; ``asleep`` bool
+    (n_pairs,); ``turned`` (n_bodies,): way of any point of a body by its rotation since the list was made, at most, as
+    `lists_expired` last found it [m].
     """
 
     pairs: np.ndarray
@@ -48,6 +57,9 @@ class Candidates(NamedTuple):
     located: np.ndarray
     position: np.ndarray
     orientation: np.ndarray
+    reach: np.ndarray
+    asleep: np.ndarray
+    turned: np.ndarray
 
 
 @inner_kernel
@@ -56,7 +68,8 @@ def empty_candidates(n_bodies):
     return Candidates(
         np.empty((0, 2), np.int64), np.empty(0, np.int64), np.empty((0, 3)), np.zeros(1, np.int64),
         np.empty(0, np.int64), np.empty((0, PACKET)), np.empty(0), np.empty((0, N_KEY), np.int64),
-        np.empty((0, LOCATED)), np.full((n_bodies, 3), np.inf), np.zeros((n_bodies, 4)),
+        np.empty((0, LOCATED)), np.full((n_bodies, 3), np.inf), np.zeros((n_bodies, 4)), np.empty(0),
+        np.empty(0, np.bool_), np.zeros(n_bodies),
     )  # fmt: skip
 
 
@@ -83,6 +96,7 @@ def lists_expired(candidates, surfaces, driven, position, orientation, skin):
         # chord of the rotation at the circumscribed sphere: 2 R sin(angle / 2)
         chord = 2.0 * surfaces.radius[body] * np.sqrt(max(1.0 - dot * dot, 0.0))
         bound = np.sqrt(squared) + chord
+        candidates.turned[body] = chord
         # not (x <= limit), here and below, so that NaN asks for new lists
         if not (bound <= most):
             second = most
@@ -112,7 +126,7 @@ def _boxes(surfaces, position, orientation):
 
 @inner_kernel
 def _near_nodes(surfaces, pair, R, d, side, skin, nodes, count):
-    """Append the nodes of one side of a pair within ``skin`` of the other body; list and count are returned."""
+    """Append the nodes of one side of a pair within ``skin`` of the other body; list, count and gap [m]."""
     owner, other = pair[side], pair[1 - side]
     shape, other_shape = surfaces.shape[owner], surfaces.shape[other]
     most = surfaces.first_node[shape + 1] - surfaces.first_node[shape]
@@ -120,16 +134,19 @@ def _near_nodes(surfaces, pair, R, d, side, skin, nodes, count):
         longer = np.empty(2 * (count + most), np.int64)
         longer[:count] = nodes[:count]
         nodes = longer
+    gap = skin
     for node in range(surfaces.first_node[shape], surfaces.first_node[shape + 1]):
         p, e = surfaces.points[node], surfaces.offset[owner]
         px, py, pz = p[0] - e[0], p[1] - e[1], p[2] - e[2]
         x = R[side, 0, 0] * px + R[side, 0, 1] * py + R[side, 0, 2] * pz + d[side, 0]
         y = R[side, 1, 0] * px + R[side, 1, 1] * py + R[side, 1, 2] * pz + d[side, 1]
         z = R[side, 2, 0] * px + R[side, 2, 1] * py + R[side, 2, 2] * pz + d[side, 2]
-        if level_set(surfaces, other_shape, x, y, z) < surfaces.steepest[other_shape] * skin:
+        distance = level_set(surfaces, other_shape, x, y, z) / surfaces.steepest[other_shape]
+        if distance < skin:
             nodes[count] = node
             count += 1
-    return nodes, count
+            gap = min(gap, distance)
+    return nodes, count, gap
 
 
 @inner_kernel
@@ -174,14 +191,15 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
     n_sides = 2 * pairs.shape[0]
     R, d = np.empty((2, 3, 3)), np.empty((2, 3))
     nodes, count = np.empty(1024, np.int64), np.zeros(n_sides + 1, np.int64)
-    share = np.empty(n_sides)
+    share, reach = np.empty(n_sides), np.full(pairs.shape[0], np.inf)
     for side in range(n_sides):
         pair, of = pairs[side // 2], side % 2
         count[side + 1] = count[side]
         share[side] = _share(surfaces, driven, pair[of], pair[1 - of])
         if share[side] > 0.0:
             relative_pose_into(position, rotation, surfaces.offset, pair, shift[side // 2], of, R, d)
-            nodes, count[side + 1] = _near_nodes(surfaces, pair, R, d, of, skin, nodes, count[side])
+            nodes, count[side + 1], gap = _near_nodes(surfaces, pair, R, d, of, skin, nodes, count[side])
+            reach[side // 2] = min(reach[side // 2], _SLEEPS_FOR * gap if gap > _LEAST_GAP * skin else 0.0)
     first = np.zeros(n_sides + 1, np.int64)
     for side in range(n_sides):
         first[side + 1] = first[side] + (count[side + 1] - count[side] + LANES - 1) // LANES
@@ -200,15 +218,13 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
                 put_triple(packets, packet, POINT, lane, p[0] - e[0], p[1] - e[1], p[2] - e[2])
             else:
                 packets[packet, POINT + lane] = FAR_AWAY
-        relative_pose_into(
-            poses.position_before, poses.rotation_before, surfaces.offset, pair, shift[side // 2], of, R, d
-        )
-        begin, end, shape = first[side], first[side + 1], surfaces.shape[pair[1 - of]]
-        locate_nodes_into(packets, located, begin, end, begin, surfaces, shape, R, d, of)
     key = np.full((pairs.shape[0], N_KEY), _FRESH, np.int64)
     new = Candidates(
-        pairs, joint, shift, first, node, packets, share, key, located, position.copy(), orientation.copy()
-    )
+        pairs, joint, shift, first, node, packets, share, key, located, position.copy(), orientation.copy(), reach,
+        np.zeros(pairs.shape[0], np.bool_), np.zeros(position.shape[0]),
+    )  # fmt: skip
+    for pair in range(pairs.shape[0]):
+        _locate_before_into(new, surfaces, poses, pair, R, d)
     _carry_over_into(old, earlier, new)
     return new, joints
 
@@ -222,13 +238,50 @@ def _most_packets(first):
     return most
 
 
+@separate_kernel
+def _locate_before_into(candidates, surfaces, poses, pair, R, d):
+    """Place the nodes of a pair where they were a step before, from where their next motion counts."""
+    pairs, first = candidates.pairs, candidates.first
+    for side in range(2):
+        relative_pose_into(
+            poses.position_before, poses.rotation_before, surfaces.offset, pairs[pair], candidates.shift[pair], side,
+            R, d,
+        )  # fmt: skip
+    for side in range(2):
+        locate_nodes_into(
+            candidates.packets, candidates.located, first[2 * pair + side], first[2 * pair + side + 1],
+            first[2 * pair], surfaces, surfaces.shape[pairs[pair, 1 - side]], R, d, side,
+        )  # fmt: skip
+
+
+@borrowing_kernel
+def sleeps(candidates, position, pair):
+    """Whether no node of a pair can touch yet with the bodies at ``position``; it is then asleep."""
+    reach = candidates.reach[pair]
+    if reach == 0.0:
+        return False
+    a, b = candidates.pairs[pair, 0], candidates.pairs[pair, 1]
+    squared = 0.0
+    for axis in range(3):
+        way = position[a, axis] - candidates.position[a, axis]
+        way -= position[b, axis] - candidates.position[b, axis]
+        squared += way * way
+    if np.sqrt(squared) + candidates.turned[a] + candidates.turned[b] < reach:
+        candidates.asleep[pair] = True
+        return True
+    return False
+
+
 @borrowing_kernel
 def locate_pair_into(candidates, surfaces, poses, pair, R, d):
-    """Locate the nodes of both sides of a pair; the area in touch, the mean of what the two sides find [m2].
+    """Locate the nodes of both sides of a pair, awake now; the area in touch, mean of what both sides find [m2].
 
     The places and ``located`` of the candidates, ``R`` (2, 3, 3) and ``d`` (2, 3) are overwritten.
     """
     pairs, first = candidates.pairs, candidates.first
+    if candidates.asleep[pair]:
+        candidates.asleep[pair] = False
+        _locate_before_into(candidates, surfaces, poses, pair, R, d)
     for side in range(2):
         relative_pose_into(
             poses.position, poses.rotation, surfaces.offset, pairs[pair], candidates.shift[pair], side, R, d
@@ -296,7 +349,7 @@ def _joints_of(pairs, earlier, old, joints):
 
 @inner_kernel
 def _carry_over_into(old, earlier, new):
-    """Shear springs of nodes that both lists hold; these are sorted, so one pass a side finds them."""
+    """Springs of nodes in both lists, of which no pair sleeps; these are sorted, so one pass a side finds them."""
     for pair in range(new.pairs.shape[0]):
         if earlier[pair] < 0:
             continue
@@ -310,3 +363,5 @@ def _carry_over_into(old, earlier, new):
                     source, target = old.packets[slot // LANES], new.packets[here // LANES]
                     for row in range(CLOSED, PACKET, LANES):
                         target[row + here % LANES] = source[row + slot % LANES]
+                    if target[HELD + here % LANES] != 0.0:
+                        new.reach[pair] = 0.0

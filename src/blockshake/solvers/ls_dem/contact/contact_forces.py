@@ -7,7 +7,7 @@ import numpy as np
 from blockshake.dynamics.friction import friction_asymmetry, friction_coefficient
 from blockshake.geometry.vectors import cross, difference, matrix_product
 from blockshake.jit import borrowing_kernel, inner_kernel, loop_kernel
-from blockshake.solvers.ls_dem.contact.candidates import locate_pair_into
+from blockshake.solvers.ls_dem.contact.candidates import locate_pair_into, sleeps
 from blockshake.solvers.ls_dem.contact.contact_law import Law, side_forces_into
 from blockshake.solvers.ls_dem.contact.packets import LANES, N_SUMS, SUM_DAMPED, SUM_HELD, SUM_SLID
 from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series, normal_stiffness
@@ -88,6 +88,9 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
         if bounds[2 * pair] == bounds[2 * pair + 2]:
             continue
         a, b, joint = pairs[pair, 0], pairs[pair, 1], candidates.joint[pair]
+        if sleeps(candidates, poses.position, pair):
+            _slip_into(loads.joints, joint, 0.0, 0.0, dt)
+            continue
         area = locate_pair_into(candidates, surfaces, poses, pair, R, d)
         k_n, k_s = normal_stiffness(interfaces, a, b), in_series(interfaces.k_s, a, b)
         gamma_n = dashpot_coefficient(interfaces, a, b, interfaces.damping_ratio, k_n, area)
