@@ -26,7 +26,8 @@ def folder(tmp_path):
     path.mkdir()
     for place in range(3):
         write_motion(path / f"record-{place}.csv", 1.0 + place, 1.0 + 0.5 * place)
-    (path / ".hidden").write_text("no motion")
+    for name in (".hidden", "record-0.csv-metadata.json", "record-1.VT2", "readme.md"):
+        (path / name).write_text("no motion")
     return path
 
 

@@ -16,6 +16,7 @@ from blockshake.files import content_digest, named_file, read_text, shipped_name
 from blockshake.tables.numbers import plain_number
 from blockshake.validation import Positive, Strict
 
+_NO_MOTIONS = (".json", ".md", ".pdf", ".vt2", ".dt2")
 _FILE, _FACTORS = "file", ("scale", "level")
 
 
@@ -79,7 +80,8 @@ def read_records(source):
     Parameters
     ----------
     source : str or path
-        A folder, each file of which is a motion (names that begin with a dot are passed over); a CSV table with the
+        A folder, each file of which is a motion (names that begin with a dot, metadata, texts about the records, and
+        PEER's velocities and displacements of the same records are passed over); a CSV table with the
         column ``file``, a path from the table's folder or a shipped name, and optionally ``scale`` [1] or ``level``, in
         the unit of the measure; or what `load_motion` reads.
 
@@ -97,8 +99,10 @@ def read_records(source):
     if not is_record_set(path):
         return (SetRecord(path.stem, str(source)),)
     if path.is_dir():
-        files = sorted(file for file in path.iterdir() if file.is_file() and not file.name.startswith("."))
-        records = [SetRecord(file.name, str(file)) for file in files]
+        files = (file for file in path.iterdir() if file.is_file() and not file.name.startswith("."))
+        records = [
+            SetRecord(file.name, str(file)) for file in sorted(files) if file.suffix.lower() not in _NO_MOTIONS
+        ]
     else:
         header, *rows = _rows(path)
         for name in header:
