@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, NamedTuple
@@ -17,6 +18,8 @@ from blockshake.tables.numbers import plain_number
 from blockshake.validation import Positive, Strict
 
 _NO_MOTIONS = (".json", ".md", ".pdf", ".vt2", ".dt2")
+# how the texts of records end that name a vertical component: PEER's "..., UP", K-NET's "U-D", ESM's "HNZ"
+_VERTICAL = re.compile(r"(?:^|[\s,:])(?:UP|DOWN|DWN|DN|U-?D|V|VERT(?:ICAL)?|[A-Z]{2}Z)$", re.IGNORECASE)
 _FILE, _FACTORS = "file", ("scale", "level")
 
 
@@ -101,7 +104,9 @@ def read_records(source):
     if path.is_dir():
         files = (file for file in path.iterdir() if file.is_file() and not file.name.startswith("."))
         records = [
-            SetRecord(file.name, str(file)) for file in sorted(files) if file.suffix.lower() not in _NO_MOTIONS
+            SetRecord(file.name, str(file))
+            for file in sorted(files)
+            if file.suffix.lower() not in _NO_MOTIONS
         ]
     else:
         header, *rows = _rows(path)
@@ -196,6 +201,9 @@ class DrawnMotions:
         key = record.path, self.baseline
         if key not in self.loaded:
             self.loaded[key] = load_motion(record.path, baseline=self.baseline)
+            for name in ("event", "stream", "channels"):
+                if _VERTICAL.search(text := str(self.loaded[key].attributes.get(name, ""))):
+                    raise InputError(record.path, name, f"expected a horizontal component, found '{text}'")
         motion, factor = self.loaded[key], record.scale
         if record.level is not None:
             own = self.intensity.of(motion)
