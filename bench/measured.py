@@ -75,13 +75,20 @@ def main(arguments):
         "--halves", type=int, default=10, help="random halves that are decided on beside the first"
     )
     options = parser.parse_args(arguments)
-    parts = []
+    parts = [_head(), made_by()]
     with tempfile.TemporaryDirectory() as folder:
         for name in SETS:
             source = options.shared / "measured" / name
             if source.is_dir():
                 parts.append(_part(name, source, Path(folder), options.halves))
-    write_text(PAGE, wrapped("\n\n".join([_head(), *parts])) + "\n")
+    write_text(PAGE, wrapped("\n\n".join(parts)) + "\n")
+
+
+def made_by():
+    """Sentence on the commit of the program that made a page."""
+    asked = ["git", "-C", str(ROOT), "describe", "--always", "--abbrev=8", "--dirty", "--exclude=*"]
+    commit = subprocess.run(asked, check=True, capture_output=True, text=True).stdout.strip()
+    return f"The program was that of commit {commit}."
 
 
 def wrapped(text):

@@ -1,7 +1,7 @@
 """Rocks that fell or stood on a shake table through the whole loop, and the page docs/results/granite-rocks.md.
 
 ``python bench/measured_rocks.py SHARED FOLDER`` makes a campaign of each rock in SHARED/measured/granite-rocks by
-``examples/measured_rocks.py``, diagnoses it as a user would, has LS-DEM simulate every fourth batch by the structure
+``examples/measured_rocks.py``, diagnoses it as a user would, has LS-DEM simulate every eighth batch by the structure
 file's model, and writes the page with its figures. Runs lie in FOLDER: a killed command goes on there.
 """
 
@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from measured import causes_in_words, wrapped
+from measured import causes_in_words, made_by, wrapped
 
 import blockshake
 from blockshake.diagnosis.answer.decision import load_decision
@@ -31,7 +31,7 @@ ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "results" / "granite-rocks.md"
 ROCKS = ("SP1", "SP2")
 TITLES = {name: title_of(name) for name in CAUSES}
-_EVERY = 4  # batch is simulated by LS-DEM
+_EVERY = 8  # batch is simulated by LS-DEM
 HEAD = (
     "# Granite rocks on a shake table\n\n"
     "Two scanned granite rocks of 353 kg each stood on a shake table under the recorded motions of hundreds of tests. "
@@ -49,8 +49,9 @@ HEAD = (
 
 def main(shared, folder):
     """Write the page."""
-    parts = [_part(rock, shared / "measured" / "granite-rocks", folder) for rock in ROCKS]
-    write_text(PAGE, wrapped("\n\n".join([HEAD, *parts])) + "\n")
+    parts = [HEAD, made_by()]
+    parts += [_part(rock, shared / "measured" / "granite-rocks", folder) for rock in ROCKS]
+    write_text(PAGE, wrapped("\n\n".join(parts)) + "\n")
 
 
 def _part(rock, source, folder):
@@ -118,7 +119,7 @@ def _gains(verdict):
 
 
 def _other_solver(campaign, store):
-    """Both solvers on the structure file's model, on the tests of every fourth batch."""
+    """Both solvers on the structure file's model, on the tests of every eighth batch."""
     batches = range(0, -(-len(campaign.tests) // BATCH), _EVERY)
     rows = []
     for solver in ("nscd-rigid", "ls-dem"):
