@@ -293,10 +293,6 @@ def _gains(verdict):
     return "\n".join(rows)
 
 
-def _percent(contrast):
-    return f"{contrast['estimate']:.1%} | {contrast['lower']:.1%} to {contrast['upper']:.1%}"
-
-
 def _errors(gain, width):
     rows = [
         "| model | friction | restitution | early [mm] | path [mm] | path [% of the width] | rotation [degrees] |",

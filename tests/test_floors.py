@@ -52,13 +52,13 @@ MOST_MODULES = 15
 WITH_ROOMS = ("diagnosis", "study")  # whose folders have a budget each
 MOST_LINES = {
     ".": 2335, "tables": 610, "statistics": 375, "geometry": 2560, "dynamics": 2800, "solvers": 8700,
-    "measurement": 4200, "simulation": 1800, "parity": 2265, "forces": 2160, "effects": 990, "pages": 1395,
+    "measurement": 4234, "simulation": 1800, "parity": 2265, "forces": 2180, "effects": 990, "pages": 1395,
     "study": 950, "study/sampling": 1050, "study/ensembles": 1495, "study/stiffness": 590,
     "study/comparison": 645, "study/fragility": 525, "study/sensitivity": 870, "study/calibration": 1085,
     "study/statements": 1085, "study/report": 1955, "views": 750, "diagnosis": 340,
     "diagnosis/evidence": 1110, "diagnosis/outside": 675, "diagnosis/answer": 1570,
     "diagnosis/nominal": 810, "diagnosis/misfit": 430, "diagnosis/verdict": 655, "diagnosis/gain": 1525,
-    "diagnosis/report": 1025, "virtual": 485, "own_files": 1145, "cost": 310, "diagnosis/flight": 1190,
+    "diagnosis/report": 1025, "virtual": 485, "own_files": 1145, "cost": 310, "diagnosis/flight": 1216,
     "diagnosis/outcomes": 915, "diagnosis/planning": 605, "study/extension": 310,
 }  # fmt: skip
 MOST_LINES_TOGETHER = 53_700

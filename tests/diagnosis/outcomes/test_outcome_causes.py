@@ -146,6 +146,18 @@ def test_check_says_what_is_there_and_what_contradicts(off_centre):
 
 
 @pytest.mark.parametrize(
+    ("scale", "outcome", "said"), [(0.01, "fell", True), (0.01, "stood", False), (30.0, "stood", True)]
+)
+def test_motions_in_another_unit_are_remarked(tmp_path, scale, outcome, said):
+    """A column falls at some hundredths of a m/s2, or stands at more than any table reaches."""
+    (tmp_path / "column.yaml").write_text(yaml.safe_dump(STRUCTURE))
+    test = {"name": "a", "motion": "alkion", "scale": scale, "role": "fit", "outcome": outcome}
+    mapping = {"name": "other unit", "structure": "column.yaml", "tests": [test]}
+    (tmp_path / "campaign.yaml").write_text(yaml.safe_dump(mapping))
+    assert ("expected m/s2" in check_file(str(tmp_path))) == said
+
+
+@pytest.mark.parametrize(
     ("changed", "said"),
     [
         ({"outcome": "toppled"}, "tests.a.outcome"),

@@ -137,7 +137,7 @@ def _gain_of_mirrored(posed, arcs, causes):
             rows, found = rows.beside(fit, 0.0), found + fit.gain
         return found
 
-    mirrors = np.array([[-1.0, 1.0, 1.0], [1.0, -1.0, 1.0]])
+    mirrors = [np.where(np.arange(3) == axis, -1.0, 1.0) for axis in arcs[0].axes if axis < 2]
     return max(map(gain, mirrors)) - gain(np.ones(3))
 
 

@@ -75,7 +75,7 @@ def _between(posed, test, before, after):
 
 
 def impact_law(came, left, spin, spun, arm, inertia):
-    """What one impact on a level ground keeps, by momentum balance.
+    """Restitution and ratio of impulses of one impact on a level ground, by momentum balance.
 
     Parameters
     ----------

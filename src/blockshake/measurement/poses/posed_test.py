@@ -119,7 +119,7 @@ def load_posed(campaign, names):
 def _rests_at(posed, test):
     """Height of the lowest point at the end of a test [m]; zero where the body moves or may fly there.
 
-    What flies rises or falls by more than ``h`` within ``2 sqrt(2 h / g)``; twice that time is looked at.
+    A flying body rises or falls by more than ``h`` within ``2 sqrt(2 h / g)``; twice that time is looked at.
     """
     span = CLEAR * posed.radius
     time = 4.0 * np.sqrt(2.0 * span / np.linalg.norm(posed.structure.file.gravity))

@@ -1,4 +1,4 @@
-"""What an impact keeps, from an impulse that is known."""
+"""Restitution and ratio of impulses, from an impulse that is known."""
 
 import numpy as np
 import pytest
