@@ -79,7 +79,7 @@ def _repeats(rock, source):
     ]
     return (
         f"{len(pairs)} pairs of tests are of the same record at peaks within {_ALIKE:.0%}. In {pairs.count(2)} of them "
-        f"both tests ended in a fall, in {pairs.count(1)} one alone: no model of the peaks can be right on both."
+        f"both tests ended in a fall, in {pairs.count(1)} one alone: there no curve over the peaks can tell much."
     )
 
 
