@@ -8,7 +8,7 @@ import yaml
 from blockshake.dynamics.describe_motion import describe_motions
 from blockshake.dynamics.intensity import motion_figures
 from blockshake.errors import InputError
-from blockshake.own_files.check import check_file
+from blockshake.own_files.check import check
 from blockshake.study.config import check_config
 from blockshake.study.ensembles.case_input import driving_motions
 from blockshake.study.sampling.latin_hypercube import draw_design
@@ -173,8 +173,8 @@ def test_a_discrete_variable_is_sampled_with_its_correlation(study):
 
 
 def test_a_check_of_a_set_and_of_a_study_tells_its_records(study, tmp_path):
-    assert len(check_file("records").splitlines()) >= 2
+    assert len(check("records").splitlines()) >= 2
     (tmp_path / "mine.yaml").write_text(yaml.safe_dump(study))
-    told = check_file("mine.yaml")
+    told = check("mine.yaml")
     assert "records/sine-2.csv: sine-2.csv" in told
     assert "cube: 10 samples draw 2 motions, each several times" in told

@@ -18,6 +18,7 @@ from blockshake.forces.seen.sight import sight_lines
 from blockshake.geometry.schema import StructureFile
 from blockshake.geometry.structure import Structure, load_structure
 from blockshake.measurement.campaigns.campaign import CampaignFile, load_campaign, load_test
+from blockshake.measurement.campaigns.commanded_motion import commanded_motion
 from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.own_files.import_campaign import import_campaign
 from blockshake.own_files.import_map import ImportMap, load_map
@@ -90,6 +91,8 @@ def _campaign_line(folder):
     campaign = load_campaign(folder)
     lines = campaign_lines(folder) + ([] if campaign.still or campaign.by_outcomes else sight_lines(campaign))
     remarks = [] if campaign.still else structure_remarks(load_structure(campaign.structure))
+    for test in campaign.tests.values() if campaign.by_outcomes else ():
+        remarks += [f"{test.name}: {remark}" for remark in motion_remarks(commanded_motion(campaign, test))]
     return _with_remarks(lines, [remark for remark in remarks if not any(remark in line for line in lines)])
 
 

@@ -61,6 +61,16 @@ def test_an_eccentric_mass_is_named_with_its_place(offset):
     assert [found[f"offset_{axis}"].estimate for axis in "xyz"] == pytest.approx(offset, abs=6e-4)
 
 
+@pytest.mark.parametrize("sign", [(1.0, 1.0, 1.0), (-1.0, 1.0, 1.0), (1.0, -1.0, 1.0)])
+def test_rotations_of_the_other_hand_are_remarked(sign):
+    """A mass centre beside the middle circles with the body, and against rotations of a mirrored frame."""
+    posed = campaign(OPEN, {"body": {"mass_offset": [0.006, -0.004, 0.005]}})
+    mirrored = [replace(test, position=test.position * sign) for test in posed.tests]
+    decision, _ = decide_flights(replace(posed, tests=mirrored))
+    told = any("other hand" in line for line in decision.cannot_see)
+    assert told == (min(sign) < 0.0)
+
+
 def test_lengths_read_too_long_are_named():
     decision, _ = decide_flights(campaign(OPEN, scale=0.98))
     assert (decision.decision, [cause.name for cause in decision.causes]) == ("named", ["sensor-gain"])

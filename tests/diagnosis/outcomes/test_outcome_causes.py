@@ -145,6 +145,15 @@ def test_check_says_what_is_there_and_what_contradicts(off_centre):
     )  # one motion, scaled, with tests of their own: some stand where a weaker one fell
 
 
+@pytest.mark.parametrize(("scale", "said"), [(0.01, True), (1.0, False), (30.0, True)])
+def test_motions_in_another_unit_are_remarked(tmp_path, scale, said):
+    (tmp_path / "column.yaml").write_text(yaml.safe_dump(STRUCTURE))
+    test = {"name": "a", "motion": "alkion", "scale": scale, "role": "fit", "outcome": "stood"}
+    mapping = {"name": "other unit", "structure": "column.yaml", "tests": [test]}
+    (tmp_path / "campaign.yaml").write_text(yaml.safe_dump(mapping))
+    assert ("remark: a: the peak acceleration is" in check(str(tmp_path))) == said
+
+
 @pytest.mark.parametrize(
     ("changed", "said"),
     [

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 import trimesh
-from scipy.spatial import cKDTree
+from scipy.spatial import ConvexHull, cKDTree
 
 from blockshake.geometry.meshes.mesh_distance import lattice_distances
 from blockshake.geometry.meshes.mesh_nodes import mesh_nodes
@@ -53,11 +53,12 @@ def test_over_every_flat_of_a_box_area_and_second_moments_are_exact(spacing):
 def test_nodes_of_a_sphere_are_even_and_lie_on_it():
     mesh = trimesh.creation.icosphere(4, 0.5)
     points, areas = mesh_nodes(mesh.vertices, mesh.faces, 0.1, INSET)
+    spacing = np.sqrt(mesh.area / 6.0) / 16.0
     assert areas.sum() == pytest.approx(mesh.area, rel=1e-9)
-    assert len(points) == pytest.approx(mesh.area / 0.1**2, rel=0.25)
+    assert len(points) == pytest.approx(mesh.area / spacing**2, rel=0.25)
     apart = cKDTree(points).query(points, k=2)[0][:, 1]
-    assert apart.min() > 0.06
-    assert apart.max() < 0.14
+    assert apart.min() > 0.6 * spacing
+    assert apart.max() < 1.4 * spacing
     assert areas.std() / areas.mean() < 0.2
     # second moments of a thin shell, 2/3 m r^2 by its integral: a third of the area times r^2 each way
     moments = (areas[:, None, None] * points[:, :, None] * points[:, None, :]).sum(axis=0)
@@ -113,11 +114,25 @@ def test_a_rounded_edge_is_no_edge():
     assert areas.sum() == pytest.approx(mesh.area, rel=1e-9)
     radius, height = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
     rim = np.isclose(height, 0.5, atol=1e-9) & (radius > 0.49)
-    assert rim.sum() == round(2.0 * np.pi * 0.5 / 0.2)
+    assert rim.sum() == round(2.0 * np.pi * 0.5 / 0.2)  # the caps are flat
     # breadths: the radius of a cap, the height of the mantle; chords of 5.6 degrees
     np.testing.assert_allclose(radius[rim], 0.5 - INSET * 0.5, atol=0.002)
     below = np.isclose(height, 0.5 - INSET * 1.0, atol=1e-9)
-    assert below.sum() == rim.sum()
+    assert below.sum() == round(2.0 * np.pi * 0.5 / (np.sqrt(mesh.area / 6.0) / 16.0))
+
+
+@pytest.mark.parametrize("spacing", [0.2, 1.0])
+def test_a_rounded_body_stands_on_its_nodes_as_its_mesh_stands(spacing):
+    """A pebble with a foot, whose rim is no edge: the facet of the nodes' hull under its middle is level, too."""
+    vertices = trimesh.creation.icosphere(4, 0.3).vertices
+    pebble = trimesh.convex.convex_hull(
+        np.column_stack([vertices[:, :2], np.maximum(vertices[:, 2], -0.285)])
+    )
+    points, _ = mesh_nodes(pebble.vertices, pebble.faces, spacing, INSET)
+    normal, offset = np.split(ConvexHull(points).equations, [3], axis=1)
+    below = normal[:, 2] < -1e-9
+    foot = normal[below][np.argmin(offset[below, 0] / normal[below, 2])]
+    assert np.degrees(np.arccos(min(-foot[2], 1.0))) < 0.1
 
 
 def test_the_same_mesh_gives_the_same_bytes():

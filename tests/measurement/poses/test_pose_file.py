@@ -155,6 +155,19 @@ def test_a_body_below_the_ground_is_refused(tmp_path):
         load_posed(load_campaign(folder), ["drop"])
 
 
+@pytest.mark.usefixtures("structure")
+@pytest.mark.parametrize(("factor", "refused"), [(1.0, False), (1.0 / 0.3048, True)])
+def test_heights_in_feet_are_refused_by_where_the_body_comes_to_rest(tmp_path, factor, refused):
+    """A block of 0.3 m drops to the ground and stands there, 0.15 m high at its middle."""
+    fallen = np.maximum(0.15, 0.5 - 4.9 * TIME**2) * factor
+    folder = campaign(tmp_path, table=planar(**{"block.z": fallen, "block.angle_y": 0.0 * TIME}))
+    if not refused:
+        assert load_posed(load_campaign(folder), ["drop"]).tests
+        return
+    with pytest.raises(InputError, match="rest 342 mm above the ground"):
+        load_posed(load_campaign(folder), ["drop"])
+
+
 def test_more_than_one_free_body_is_refused(tmp_path):
     second = {**STRUCTURE["bodies"][1], "name": "second", "position": [1.0, 0.0, 1.0]}
     mapping = {**STRUCTURE, "bodies": [*STRUCTURE["bodies"], second]}

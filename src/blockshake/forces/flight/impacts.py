@@ -65,18 +65,39 @@ def _between(posed, test, before, after):
     height = place[2] + turned[2] @ arms.T
     hit = height < height.min() + _TOGETHER * posed.radius
     arm = turned @ arms[hit].mean(axis=0)
-    approach = (came + np.cross(spin, arm))[2]
-    impulse = left - came
-    moment = np.cross(arm, impulse)
-    turn = turned @ posed.structure.inertia[posed.body] @ turned.T @ (spun - spin)
-    if approach > -_SEEN or impulse[2] <= 0.0 or _cosine(turn, moment) < _OF_ONE:
+    inertia = turned @ posed.structure.inertia[posed.body] @ turned.T / posed.structure.mass[posed.body]
+    restitution, ratio = impact_law(came, left, spin, spun, arm, inertia)
+    if np.isnan(restitution):
         return None
     return FlightImpact(
-        test.name, float(times[at]), _KINDS.get(int(hit.sum()), "face"),
-        float(-(left + np.cross(spun, arm))[2] / approach),
-        float(np.linalg.norm(impulse[:2]) / impulse[2]),
-        _kept(spin, spun),
-    )  # fmt: skip
+        test.name, float(times[at]), _KINDS.get(int(hit.sum()), "face"), restitution, ratio, _kept(spin, spun)
+    )
+
+
+def impact_law(came, left, spin, spun, arm, inertia):
+    """Restitution and ratio of impulses of one impact on a level ground, by momentum balance.
+
+    Parameters
+    ----------
+    came, left, spin, spun : float64 arrays, shape (3,)
+        Velocity of the mass centre [m/s] and angular velocity [rad/s], before and after, z up.
+    arm : float64 array, shape (3,)
+        Of the contact from the mass centre [m].
+    inertia : float64 array, shape (3, 3)
+        Over the mass, about the mass centre, world frame [m2].
+
+    Returns
+    -------
+    restitution, ratio : float
+        Of the normal velocity of the contact; tangential over normal impulse [1]. NaN where the contact did not come
+        down, or where the spin does not change as an impulse at the contact would change it.
+    """
+    approach, impulse = (came + np.cross(spin, arm))[2], left - came
+    fits = _cosine(inertia @ (spun - spin), np.cross(arm, impulse)) >= _OF_ONE
+    if approach > -_SEEN or impulse[2] <= 0.0 or not fits:
+        return np.nan, np.nan
+    restitution = -(left + np.cross(spun, arm))[2] / approach
+    return float(restitution), float(np.linalg.norm(impulse[:2]) / impulse[2])
 
 
 def _cosine(one, other):

@@ -1,5 +1,7 @@
 """Surface nodes of any closed triangulated mesh: evenly spread, with nodes just inside its sharp edges."""
 
+from functools import lru_cache
+
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
@@ -12,6 +14,8 @@ _FINENESS = 6
 # Seeds at least this many spacings apart come out, spread, at about one a spacing squared.
 _APART = 0.8
 _ROUNDS = 20  # of moving nodes to the centroids of their areas (Lloyd 1982)
+_FLAT = 1e-3  # depth of a face that counts as flat, over the side of the cube of the mesh's area
+_ON_CURVED = 16  # nodes along that side; on a curved face a body stands on its nodes
 
 
 def mesh_nodes(vertices, faces, spacing, inset):
@@ -24,7 +28,8 @@ def mesh_nodes(vertices, faces, spacing, inset):
     faces : int array, shape (n_triangles, 3)
         Outward triangles of a closed surface.
     spacing : float
-        Aimed distance of nodes [m].
+        Aimed distance of nodes [m]; on a face that is not flat at most a 16th of the side of the cube that has the
+        mesh's area.
     inset : float
         Distance from sharp convex edges of the nodes that stand along them, on both sides, over the breadth of the
         face, which is twice its area over its perimeter [1]. A body sinks by at most that distance onto an
@@ -46,8 +51,14 @@ def mesh_nodes(vertices, faces, spacing, inset):
     to the centroids of the parts of the face that are nearest to them (Lloyd 1982, IEEE
     Transactions on Information Theory 28(2)); those along edges stay. No random number is drawn.
     """
-    vertices = np.asarray(vertices, dtype=float)
-    faces = np.asarray(faces, dtype=np.int64)
+    vertices, faces = np.ascontiguousarray(vertices, dtype=float), np.ascontiguousarray(faces, dtype=np.int64)
+    return _kept_nodes(vertices.tobytes(), faces.tobytes(), spacing, inset)
+
+
+@lru_cache(maxsize=16)
+def _kept_nodes(vertices, faces, spacing, inset):
+    """`mesh_nodes` of the bytes of a mesh; kept, for those of a scan take as long as a run."""
+    vertices, faces = np.frombuffer(vertices).reshape(-1, 3), np.frombuffer(faces, np.int64).reshape(-1, 3)
     corners = vertices[faces]
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     doubled = np.linalg.norm(cross, axis=1)
@@ -57,18 +68,23 @@ def mesh_nodes(vertices, faces, spacing, inset):
     links = coo_matrix((np.ones(smooth.sum()), tuple(pairs[smooth].T)), shape=(len(faces), len(faces)))
     n_patches, patch = connected_components(links, directed=False)
     sides = boundaries(vertices, faces, normals, patch)
+    side = np.sqrt(0.5 * doubled.sum() / 6.0)
     points, areas = [], []
     for label in range(n_patches):
         members = np.flatnonzero((patch == label) & (doubled > 0.0))
         if len(members) == 0:
             continue
+        height = corners[members] @ normals[members[np.argmax(doubled[members])]]
+        own = spacing if np.ptp(height) < _FLAT * side else min(spacing, side / _ON_CURVED)
         edge = perimeter_points(
-            vertices, normals, sides.get(label, []), 0.5 * doubled[members].sum(), spacing, inset
+            vertices, normals, sides.get(label, []), 0.5 * doubled[members].sum(), own, inset
         )
-        nodes, weights = _patch_nodes(corners[members], normals[members], spacing, edge)
+        nodes, weights = _patch_nodes(corners[members], normals[members], own, edge)
         points.append(nodes)
         areas.append(weights)
-    return np.vstack(points), np.concatenate(areas)
+    points, areas = np.vstack(points), np.concatenate(areas)
+    points.flags.writeable = areas.flags.writeable = False
+    return points, areas
 
 
 def _patch_nodes(corners, normals, spacing, edge):

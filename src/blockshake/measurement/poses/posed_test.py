@@ -84,7 +84,7 @@ def load_posed(campaign, names):
     Raises
     ------
     InputError
-        As of `read_poses`; or the body lies below the ground.
+        As of `read_poses`; or the body lies below the ground, or ends at rest above it.
     """
     structure = load_structure(campaign.structure)
     body, ground = free_body(structure)
@@ -105,5 +105,23 @@ def load_posed(campaign, names):
                 f"expected the height of the centroid, z up, over a ground at {found.ground:g} m, and rotations from "
                 f"body to world; the body lies {-1e3 * lowest:.3g} mm below the ground in one of 20 readings",
             )  # fmt: skip
+        rest = _rests_at(found, test)
+        if rest > _SUNK * found.radius:
+            raise InputError(
+                path, f"{found.name}.z",
+                f"expected heights in metres over a ground at {found.ground:g} m; the body ends at rest "
+                f"{1e3 * rest:.3g} mm above the ground",
+            )  # fmt: skip
         found.tests.append(test)
     return found
+
+
+def _rests_at(posed, test):
+    """Height of the lowest point at the end of a test [m]; zero where the body moves or may fly there.
+
+    A flying body rises or falls by more than ``h`` within ``2 sqrt(2 h / g)``; twice that time is looked at.
+    """
+    span = CLEAR * posed.radius
+    time = 4.0 * np.sqrt(2.0 * span / np.linalg.norm(posed.structure.file.gravity))
+    end = posed.heights(test)[test.time > test.time[-1] - time]
+    return float(end.min()) if test.time[-1] > time and np.ptp(end, axis=0).max() < span else 0.0
