@@ -94,9 +94,7 @@ def test_a_wrong_intensity_is_named(study, intensity, said):
     assert said in refusal(study)
 
 
-def test_a_ladder_has_no_set_and_samples_climb_from_one_level(study):
-    study["ladder"] = {"motions": ["records"]}
-    assert "ladder.motions: expected single motions" in refusal(study)
+def test_samples_climb_from_one_level(study):
     study["ladder"] = {"first": 1.0}
     study["fragility"] = {"cases": ["cube"], "size": 5}
     study["cases"][0]["intensity"] = {"levels": [1.0, 2.0]}
