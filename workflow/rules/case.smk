@@ -2,6 +2,12 @@
 
 from functools import cache
 
+from blockshake.study.ensembles.batch import HALF_STEP
+
+
+wildcard_constraints:
+    batch=rf"\d\d\d+-\d\d\d+|{HALF_STEP}",
+
 
 @cache
 def campaign_files(case, every=False):
