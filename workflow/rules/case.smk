@@ -4,6 +4,11 @@ from functools import cache
 
 from blockshake.dynamics.record_set import record_files
 from blockshake.files import content_digest
+from blockshake.study.ensembles.batch import HALF_STEP
+
+
+wildcard_constraints:
+    batch=rf"\d\d\d+-\d\d\d+|{HALF_STEP}",
 
 
 def by_content(path):

@@ -29,7 +29,6 @@ from blockshake.simulation.models import MODELS as SOLVERS, solver_of
 from blockshake.sources import kernel_sources, script_sources, source_digest
 from blockshake.study.analyses import ANALYSES
 from blockshake.study.config import StudyConfig, check_config
-from blockshake.study.ensembles.batch import HALF_STEP
 from blockshake.validation import validated
 from blockshake.working_folder import (
     end_with_command,
@@ -162,5 +161,4 @@ wildcard_constraints:
     model="|".join({**SOLVERS, **config["models"]}),
     case="|".join(CASES),
     motion="|".join(MOTIONS),
-    batch=rf"\d\d\d+-\d\d\d+|{HALF_STEP}",
     digest="[0-9a-f]{12}",

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from blockshake.errors import InputError
 
-# CPU seconds of jobs beside their simulations. Their start, `_USUAL`, was measured beside other work (2026-11-26)
-# where the plan of the default study took `_PLANNED`. What some have to do beside it is from the logs of that study,
-# kernels are from decision 17
+# CPU seconds of jobs beside their simulations. Their start, `_USUAL`, was measured beside other work (2026-11-26),
+# where the plan of the default study took `_PLANNED`; what some have to do beside it is from the logs of that study,
+# kernels are from decision 17.
 _USUAL = 2.2
 _FIXED = {
     "all": 0.0,
