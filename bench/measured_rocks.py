@@ -1,7 +1,7 @@
 """Rocks that fell or stood on a shake table through the whole loop, and the page docs/results/granite-rocks.md.
 
 ``python bench/measured_rocks.py SHARED FOLDER`` makes a campaign of each rock in SHARED/measured/granite-rocks by
-``examples/measured_rocks.py``, diagnoses it as a user would, has LS-DEM simulate every eighth batch by the structure
+``examples/measured_rocks.py``, diagnoses it as a user would, has LS-DEM simulate every fourth batch by the structure
 file's model, and writes the page with its figures. Runs lie in FOLDER: a killed command goes on there.
 """
 
@@ -34,7 +34,7 @@ PAGE = ROOT / "docs" / "results" / "granite-rocks.md"
 ROCKS = ("SP1", "SP2")
 TITLES = {name: title_of(name) for name in CAUSES}
 _ALIKE = 0.1  # by which the peaks of a record may differ that is run again
-_EVERY = 8  # batch is simulated by LS-DEM
+_EVERY = 4  # batch is simulated by LS-DEM
 HEAD = (
     "# Granite rocks on a shake table\n\n"
     "Two scanned granite rocks of 353 kg each stood on a shake table under the recorded motions of hundreds of tests. "
@@ -139,7 +139,7 @@ def _gains(verdict):
 
 
 def _other_solver(campaign, store):
-    """Both solvers on the structure file's model, on the tests of every eighth batch."""
+    """Both solvers on the structure file's model, on the tests of every fourth batch."""
     batches = range(0, -(-len(campaign.tests) // BATCH), _EVERY)
     rows = []
     for solver in ("nscd-rigid", "ls-dem"):

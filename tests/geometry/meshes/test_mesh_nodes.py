@@ -53,7 +53,7 @@ def test_over_every_flat_of_a_box_area_and_second_moments_are_exact(spacing):
 def test_nodes_of_a_sphere_are_even_and_lie_on_it():
     mesh = trimesh.creation.icosphere(4, 0.5)
     points, areas = mesh_nodes(mesh.vertices, mesh.faces, 0.1, INSET)
-    spacing = np.sqrt(mesh.area / 6.0) / 16.0
+    spacing = np.sqrt(mesh.area / 6.0) / 20.0
     assert areas.sum() == pytest.approx(mesh.area, rel=1e-9)
     assert len(points) == pytest.approx(mesh.area / spacing**2, rel=0.25)
     apart = cKDTree(points).query(points, k=2)[0][:, 1]
@@ -118,7 +118,7 @@ def test_a_rounded_edge_is_no_edge():
     # breadths: the radius of a cap, the height of the mantle; chords of 5.6 degrees
     np.testing.assert_allclose(radius[rim], 0.5 - INSET * 0.5, atol=0.002)
     below = np.isclose(height, 0.5 - INSET * 1.0, atol=1e-9)
-    assert below.sum() == round(2.0 * np.pi * 0.5 / (np.sqrt(mesh.area / 6.0) / 16.0))
+    assert below.sum() == round(2.0 * np.pi * 0.5 / (np.sqrt(mesh.area / 6.0) / 20.0))
 
 
 @pytest.mark.parametrize("spacing", [0.2, 1.0])

@@ -15,7 +15,7 @@ _FINENESS = 6
 _APART = 0.8
 _ROUNDS = 20  # of moving nodes to the centroids of their areas (Lloyd 1982)
 _FLAT = 1e-3  # depth of a face that counts as flat, over the side of the cube of the mesh's area
-_ON_CURVED = 16  # nodes along that side; on a curved face a body stands on its nodes
+_ON_CURVED = 20  # nodes along that side; on a curved face a body stands on its nodes
 
 
 def mesh_nodes(vertices, faces, spacing, inset):
@@ -28,7 +28,7 @@ def mesh_nodes(vertices, faces, spacing, inset):
     faces : int array, shape (n_triangles, 3)
         Outward triangles of a closed surface.
     spacing : float
-        Aimed distance of nodes [m]; on a face that is not flat at most a 16th of the side of the cube that has the
+        Aimed distance of nodes [m]; on a face that is not flat at most a 20th of the side of the cube that has the
         mesh's area.
     inset : float
         Distance from sharp convex edges of the nodes that stand along them, on both sides, over the breadth of the
