@@ -91,6 +91,7 @@ def make_test(structure, run, seed, colour=0.0, mounting=0.0, outliers=0.0, **fa
     for marker in structure.file.markers:
         shift = mounted.uniform(-mounting, mounting, 3)
         places[marker.name] = tuple(shift + np.array(places.get(marker.name, (0.0, 0.0, 0.0))))
+    ranges = faults.pop("marker_range", {})  # which the noise is held to as well
     sigma, sigma_acc = faults.pop("marker_noise", 1e-4), faults.pop("accelerometer_noise", 0.02)
     silent = Instruments(
         marker_noise=0.0, accelerometer_noise=0.0, transducer_noise=0.0, marker_offset=places, **faults
@@ -100,6 +101,9 @@ def make_test(structure, run, seed, colour=0.0, mounting=0.0, outliers=0.0, **fa
     hit = generator.random(noise.shape[:2]) < outliers
     noise[hit] += generator.normal(0.0, 50.0 * sigma, (hit.sum(), 3))
     test["marker_displacement"] = test["marker_displacement"] + noise - noise[:1]
+    for name, end in ranges.items():
+        read = test["marker_displacement"].loc[{"marker": name}]
+        read[:] = read.clip(-end, end)
     test["accelerometer"] = test["accelerometer"] + coloured(
         generator, test["accelerometer"].shape, colour, sigma_acc
     )

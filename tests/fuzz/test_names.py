@@ -185,6 +185,7 @@ def test_a_study_in_an_odd_folder_reaches_no_shell(odd, tmp_path):
 )
 def test_a_study_refuses_names_that_cannot_name_results(key, value, words):
     study = copy.deepcopy(STUDY)
+    study["cases"].append(study["cases"][0] | {"name": "other"})
     study["cases"][0][key] = value
     with pytest.raises(InputError, match=words):
         check_config(study, "study.yaml")

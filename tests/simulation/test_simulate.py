@@ -59,7 +59,7 @@ def test_slab_follows_the_motion(run):
 
 def test_lowest_joint_carries_the_weight_at_the_start(run):
     weight = 3 * 7363.699 * 9.81  # N, three chamfered blocks of 2400 kg/m3
-    force = float(run["joint_force"].sel(joint=0, axis="z").isel(time=0))
+    force = float(run["joint_force"].sel(axis="z").isel(joint=0, time=0))
     assert force == pytest.approx(weight, rel=1e-5)
 
 

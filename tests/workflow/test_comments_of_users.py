@@ -9,7 +9,7 @@ from blockshake.files import shipped
 DESCRIBED = "results/small/motions/own.nc"
 # by which the input of a rule names files of users
 NAMED = r"\b(?:structure_file|case_files|run_files|files_of_report|motion_file|"
-NAMED += r"LADDER_FILES|measured_files|open_files)\b"
+NAMED += r"measured_files|open_files)\b"
 
 
 def due(checkout):
@@ -23,7 +23,8 @@ def test_a_comment_in_a_file_of_the_user_reruns_nothing(tmp_path):
     path = tmp_path / "own.yaml"
     text = shipped("motions", "alkion").read_text()
     path.write_text(text)
-    checkout.write_config(checkout.config | {"ladder": checkout.config["ladder"] | {"motions": ["own.yaml"]}})
+    case = {key: value for key, value in checkout.config["cases"][0].items() if key not in ("measured", "input")}
+    checkout.write_config(checkout.config | {"cases": [case | {"motion": "own.yaml"}]})
     made = checkout.snakemake(DESCRIBED)
     assert made.returncode == 0, made.stderr
     assert not due(checkout)
@@ -39,5 +40,5 @@ def test_every_rule_that_reads_a_file_of_the_user_watches_its_content():
     texts = [path.read_text() for path in sorted((ROOT / "workflow" / "rules").glob("*.smk"))]
     rules = [rule for text in texts for rule in re.split(r"\n(?=rule |checkpoint )", text)]
     readers = [rule for rule in rules if "    params:" in rule and re.search(NAMED, rule.split("output:")[0])]
-    assert len(readers) == 15
+    assert len(readers) == 14
     assert all("said=said(" in rule for rule in readers)

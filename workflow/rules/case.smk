@@ -17,7 +17,7 @@ def by_content(path):
 
 
 def said(*inputs):
-    """Parameter of a rule with these inputs: what the files in YAML say, in which a comment counts nothing.
+    """Parameter that goes with such inputs of a rule: what the files in YAML say, in which a comment counts nothing.
 
     Of a function of `input` itself Snakemake does not notice a change.
     """
@@ -91,6 +91,11 @@ def case_files(wildcards):
 def files_of_motion(motion):
     """File of a motion, or all those of a set of records."""
     return [by_content(beside(path)) for path in record_files(motion)]
+
+
+def motion_file(wildcards):
+    """Files of a motion or a set of records, by the name of its results."""
+    return files_of_motion(MOTIONS[wildcards.motion])
 
 
 def case_keys(case, *more):

@@ -65,6 +65,7 @@ rule fit_cloud:
         "../envs/blockshake.yaml"
     params:
         case=case_definition,
+        said=said(case_files),
         seed=lookup(dpath="ensemble/seed", within=config),
         largest_drift=lookup(dpath="ladder/largest_drift", within=config),
         source=source_of("fit_cloud"),

@@ -1,8 +1,3 @@
-def motion_file(wildcards):
-    """Files of a motion or a set of records, by the name of its results."""
-    return files_of_motion(MOTIONS[wildcards.motion])
-
-
 rule describe_motion:
     """Histories, response spectrum and figures of a ground motion."""
     input:

@@ -52,7 +52,7 @@ def read_timings(logs, samples):
     timings = []
     for (model, case), figures in samples.items():
         costs, covered = [], set()
-        for path in sorted(Path(logs, "simulate_batch", model, case).glob("*-*.log")):
+        for path in sorted(Path(logs, "simulate_batch", model, case).glob("[0-9]*-*.log")):
             first, last = (int(part) for part in path.stem.split("-"))
             inside = [int(sample) for sample in figures["sample"].values if first <= sample <= last]
             if (
