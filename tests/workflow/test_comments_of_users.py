@@ -23,7 +23,9 @@ def test_a_comment_in_a_file_of_the_user_reruns_nothing(tmp_path):
     path = tmp_path / "own.yaml"
     text = shipped("motions", "alkion").read_text()
     path.write_text(text)
-    case = {key: value for key, value in checkout.config["cases"][0].items() if key not in ("measured", "input")}
+    case = {
+        key: value for key, value in checkout.config["cases"][0].items() if key not in ("measured", "input")
+    }
     checkout.write_config(checkout.config | {"cases": [case | {"motion": "own.yaml"}]})
     made = checkout.snakemake(DESCRIBED)
     assert made.returncode == 0, made.stderr
