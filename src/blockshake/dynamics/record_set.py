@@ -17,10 +17,10 @@ from blockshake.files import content_digest, named_file, read_text, shipped_name
 from blockshake.tables.numbers import plain_number
 from blockshake.validation import Positive, Strict
 
-_NO_MOTIONS = (".json", ".md", ".pdf", ".vt2", ".dt2")
 # how the texts of records end that name a vertical component: PEER's "..., UP", K-NET's "U-D", ESM's "HNZ"
 _VERTICAL = re.compile(r"(?:^|[\s,:])(?:UP|DOWN|DWN|DN|U-?D|V|VERT(?:ICAL)?|[A-Z]{2}Z)$", re.IGNORECASE)
 _FILE, _FACTORS = "file", ("scale", "level")
+_NO_MOTIONS = (".json", ".md", ".pdf", ".vt2", ".dt2")  # what lies beside records in a folder
 
 
 class Intensity(Strict):

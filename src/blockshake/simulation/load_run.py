@@ -12,7 +12,7 @@ from blockshake.files import AnyPath
 from blockshake.geometry.schema import AXES, QUATERNION
 from blockshake.geometry.structure import Structure, build_structure
 from blockshake.interrupts import delayed_interrupts
-from blockshake.simulation.run_dataset import RUN_HISTORIES
+from blockshake.simulation.run_dataset import RUN_HISTORIES, joint_names
 from blockshake.tables.damaged_hdf5 import DAMAGE, has_endless_heap
 
 _JOINTS = ("lower", "upper")
@@ -75,10 +75,8 @@ def load_run(source: RunSource, meshes: AnyPath | None = None) -> tuple[xr.Datas
     reached = np.isfinite(run["position"].to_numpy()).all(axis=(1, 2))
     if not reached.any():
         raise InputError(path, "position", "expected at least one time that the run reached")
-    joints = [
-        f"{lower}-{upper}" for lower, upper in zip(run["lower"].values, run["upper"].values, strict=True)
-    ]
-    run = run.isel(time=np.flatnonzero(reached)).assign_coords(joint=np.array(joints, dtype=str))
+    joints = joint_names(run["lower"].values, run["upper"].values)  # a file of before has none
+    run = run.isel(time=np.flatnonzero(reached)).assign_coords(joint=joints)
     return run, structure
 
 

@@ -62,11 +62,16 @@ def run_dataset(structure, rows, start):
             "marker": np.array([marker.name for marker in markers], dtype=str),
             "marker_body": ("marker", np.array([marker.body for marker in markers], dtype=str)),
             "term": list(ENERGY_TERMS),
-            "joint": np.array([f"{one}-{other}" for one, other in zip(lower, upper, strict=True)], dtype=str),
+            "joint": joint_names(lower, upper),
             "lower": ("joint", np.array(lower, dtype=str)),
             "upper": ("joint", np.array(upper, dtype=str)),
         },
     )
+
+
+def joint_names(lower, upper):
+    """Names of joints, ``LOWER-UPPER``, array of str, from those of their bodies."""
+    return np.array([f"{one}-{other}" for one, other in zip(lower, upper, strict=True)], dtype=str)
 
 
 def add_readings(run, name, times, values, sensors):
