@@ -165,6 +165,22 @@ def test_a_test_that_many_samples_do_not_end_is_not_asked(campaign, tmp_path, mo
     assert found["tests"] == []
 
 
+def test_a_run_that_does_not_converge_is_made_again_by_a_shorter_step(campaign, tmp_path, monkeypatch):
+    """Some samples' joints ask for a shorter step than their springs alone: their test would not be asked."""
+    folder = campaign(SQUAT, {FRICTION: 0.4}, [_noise(seed, 4.0, 2.5, 4.0) for seed in range(2)], 2.5)
+    steps = []
+
+    def short_steps_alone(*arguments, time_step, **options):
+        steps.append(time_step)
+        run = simulate(*arguments, time_step=time_step, **options)
+        return run if time_step < 4e-4 else run.assign_attrs(status="not-converged")
+
+    monkeypatch.setattr("blockshake.study.calibration.readings.simulate", short_steps_alone)
+    _, found = _answers(folder, ["nscd-rigid"], 20, 2.5, tmp_path)
+    assert steps == 20 * [1e-3, 5e-4, 2.5e-4]
+    assert found["left_out"] == []
+
+
 def test_both_models_answer_and_the_sealed_test_is_not_read(campaign, tmp_path):
     folder = campaign(SQUAT, {FRICTION: 0.4}, [_noise(seed, 4.0, 2.5, 4.0) for seed in range(2)], 2.5)
     (folder / "t1.nc").write_bytes(b"sealed")
