@@ -15,6 +15,7 @@ from blockshake.simulation.simulate import simulate
 
 STRUCTURES = PACKAGE.parents[1] / "hidden_effects" / "structures"
 DURATION = 6.0  # s
+RIGID = "nscd-rigid", {}, 5e-4
 
 
 def cause_of(name, place, values, when=None):
@@ -22,12 +23,15 @@ def cause_of(name, place, values, when=None):
     return made_up_cause(name, place, members=(values,), when=when or {})
 
 
-def seen_tests(structure, motions, cause=None, change=None):
+def seen_tests(structure, motions, cause=None, change=None, duration=DURATION, model=RIGID):
     """`SeenTest` of every motion, by name with its scale, as the sensors of the structure read it.
 
     ``change`` of an experiment and the name of its test: what happens there, and the structure does not know.
+    ``model`` has the solver, its parameters and the time step [s].
     """
-    file, tests = load_structure(STRUCTURES / f"{structure}.yaml"), []
+    path = STRUCTURES / f"{structure}.yaml"
+    file, tests = load_structure(path if path.is_file() else structure), []
+    solver, parameters, time_step = model
     for seed, (name, (motion, scale)) in enumerate(motions.items()):
         experiment = Experiment(file, load_motion(motion, scale), Instruments())
         if change:
@@ -35,8 +39,8 @@ def seen_tests(structure, motions, cause=None, change=None):
         if cause:
             experiment = extended_experiment(experiment, cause, 0, name)
         run = simulate(
-            experiment.structure, experiment.motion, "nscd-rigid", {},
-            time_step=5e-4, duration=DURATION, output_rate=200.0,
+            experiment.structure, experiment.motion, solver, parameters,
+            time_step=time_step, duration=duration, output_rate=200.0,
         )  # fmt: skip
         readings = observe(run, experiment.structure, experiment.instruments, seed)
         known = [marker.name for marker in file.file.markers]

@@ -4,12 +4,11 @@ import numpy as np
 
 from blockshake.effects.effect import Columns, Effect, EffectParameter
 from blockshake.effects.places import face_of, joints, stated_joint
-from blockshake.forces.seen.wrench_histories import edge_inward, normal_force
+from blockshake.forces.seen.wrench_histories import bed_inset, edge_inward, normal_force
 
 COMPLIANCES = np.geomspace(2e-11, 1e-9, 18)  # m3/N
 _RATIO = COMPLIANCES[1] / COMPLIANCES[0]
 _SMALLEST = 1e-4  # rad
-_WIDEST = 2.0 / 3.0  # of the half width, by which the resultant of a soft face lies within the edge at most
 
 
 def _act(experiment, values, place):
@@ -19,17 +18,15 @@ def _act(experiment, values, place):
 
 
 def _columns(seen, place):
-    """Resultant of a layer without tension: ``sqrt(2 N c / (9 L phi))`` within the edge, for every compliance."""
+    """Edge further in by the `bed_inset` of a layer, for every compliance."""
     face = face_of(seen, place)
     inward, instant = seen.rows.along(edge_inward(seen, face)), seen.rows.instant
-    length = float(np.ptp(seen.faces[face].corners[:, 1]))
     turn = np.maximum(np.abs(seen.joints.rotation[instant, face]), _SMALLEST)
     normal = np.maximum(normal_force(seen, face)[instant], 0.0)
-    widest = _WIDEST * seen.faces[face].half_width
     return [
         Columns(
             {"compliance": float(value)},
-            (inward * np.minimum(np.sqrt(2.0 * normal * value / (9.0 * length * turn)), widest))[:, None],
+            (inward * bed_inset(normal, value, turn, seen.faces[face]))[:, None],
             None,
             True,
         )

@@ -77,6 +77,15 @@ def test_sound_blocks_are_called_nothing():
     assert decision.p == 1.0
 
 
+@pytest.mark.slow
+def test_sound_elastic_blocks_under_a_tall_stack_are_called_nothing():
+    """The joint under four blocks bears 5 cm within its edge as it opens, and on the edge from 1 mrad on."""
+    motions = {f"alkion-{scale}": ("alkion", scale) for scale in (1.25, 2.0, 2.75)}
+    motions |= {f"basso-tirreno-{scale}": ("basso-tirreno", scale) for scale in (1.25, 2.0)}
+    model = "ls-dem", {"ls_dem.node_spacing": 0.16}, 5e-5
+    assert decide(seen_tests("configuration-2", motions, duration=10.0, model=model)).decision.parts == ()
+
+
 def test_every_effect_of_forces_and_every_form_is_tried():
     tried = {name for name, *_ in CAUSES + SLOW}
     of_forces = {name for name, effect in EFFECTS.items() if effect.columns or effect.turns or effect.lifts}

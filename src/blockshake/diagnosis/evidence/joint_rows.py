@@ -5,14 +5,17 @@ from functools import cached_property
 
 import numpy as np
 
+from blockshake.forces.joint_motion import TURNED
 from blockshake.forces.seen.seen_test import SeenTest
 from blockshake.forces.seen.wrench_histories import (
+    bed_inset,
     edge_inward,
     edges_along,
     friction_against_slip,
     mass_centre_off,
     normal_force,
 )
+from blockshake.geometry.rotations import rotation_matrices
 
 
 @dataclass(frozen=True)
@@ -27,6 +30,8 @@ class Hinge:
         Edge that bears.
     turn, normal : float64 arrays, shape (n_rows,)
         Rotation without its sign [rad], and normal force [N].
+    bed : float64 array, shape (n_rows,)
+        `bed_inset` of faces as soft as the two blocks, at the least rotation that counts as turned [m].
     """
 
     inward: np.ndarray
@@ -34,6 +39,7 @@ class Hinge:
     edge: np.ndarray
     turn: np.ndarray
     normal: np.ndarray
+    bed: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -72,14 +78,25 @@ class JointRows:
             for tangent, turn in enumerate((joints.rotation, joints.roll)):
                 inward = self.rows.along(edge_inward(self.seen, face, tangent))
                 if inward.any():
+                    normal = np.abs(normal_force(self.seen, face)[instant])
                     found[face, tangent] = Hinge(
                         inward,
                         self.rows.along(edges_along(self.seen, face, tangent)),
                         self.seen.states.edge[instant, face, tangent],
                         np.abs(turn[instant, face]),
-                        np.abs(normal_force(self.seen, face)[instant]),
+                        normal,
+                        bed_inset(normal, self._softness(face), TURNED, self.seen.faces[face], tangent),
                     )
         return found
+
+    def _softness(self, face):
+        """Closure of the halves of both blocks of a face by pressure, ``h / 2 E`` each [m3/N]."""
+        structure, soft = self.seen.structure, 0.0
+        for body in (self.seen.faces[face].lower, self.seen.faces[face].upper):
+            along = rotation_matrices(structure.orientation[body]).T @ self.seen.faces[face].axes[:, 2]
+            modulus = structure.file.materials[structure.file.bodies[body].material].youngs_modulus
+            soft += 0.5 * float(np.ptp(structure.solid(body).vertices @ along)) / modulus
+        return soft
 
     @cached_property
     def slides(self):

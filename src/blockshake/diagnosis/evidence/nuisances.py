@@ -5,12 +5,15 @@ Each is a column of the rows times its standard deviation, marginalised in close
 
 import numpy as np
 
+from blockshake.forces.joint_motion import TURNED
+
 INWARD = (
     0.005  # m, mean by which edges lie further in than the structure file says: chamfers and contact nodes
 )
 _ALL_INWARD, _INWARD, _ALONG, _ALONG_OF_TEST = 0.006, 0.003, 0.001, 0.001  # m
 _GROWTH, _GROWTH_AT = 0.0015, 0.01  # m by this rotation: edges are rounded
 _CLOSING, _CLOSING_AT = 0.006, 0.001  # m, rad: elastic faces bear wider the less they have turned
+_BARELY = 1.5  # power of one over the rotation by which a face just opened comes to bear on its edge
 _ECCENTRIC = 0.001  # m
 _PAIR, _JOINT, _RISE, _RISE_AT = 0.12, 0.05, 0.05, 0.03  # of the coefficient; m/s
 _SMALLEST_TURN, _MOST_RISE = 1e-5, 2.0
@@ -38,6 +41,7 @@ def _of_edges(tests):
         yield _by_test(tests, key, lambda h: _ALONG * h.along)
         yield _by_test(tests, key, lambda h: _GROWTH * h.inward * h.turn / _GROWTH_AT)
         yield _by_test(tests, key, lambda h: _CLOSING * h.inward * _closing(h.turn))
+        yield _by_test(tests, key, lambda h: h.inward * h.bed * _barely_turned(h.turn))
         for placed_anew in tests:
             moved = _by_test(tests, key, lambda h: _ALONG_OF_TEST * h.along)
             yield [
@@ -47,6 +51,14 @@ def _of_edges(tests):
 
 def _closing(turn):
     return np.minimum(1.0, _CLOSING_AT / np.maximum(turn, _SMALLEST_TURN))
+
+
+def _barely_turned(turn):
+    """Share of the bed's inset that is left at a rotation.
+
+    A continuous bed keeps one over its root; a face that touches at few rows of points, one over its square.
+    """
+    return np.minimum(1.0, TURNED / np.maximum(turn, _SMALLEST_TURN)) ** _BARELY
 
 
 def _by_test(tests, key, rows):

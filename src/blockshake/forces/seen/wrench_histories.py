@@ -6,6 +6,10 @@ frame, per unit of its amplitude. It is zero where a motion is not known: no row
 
 import numpy as np
 
+_WIDEST = (
+    2.0 / 3.0
+)  # of the half width, by which the resultant of an elastic face lies within the edge at most
+
 
 def edge_inward(seen, face, tangent=0, edge=0):
     """Moment of a bearing edge that lies 1 m further in: ``s N`` about the other tangent.
@@ -35,6 +39,24 @@ def _shifted(seen, face, tangent, shift):
     moment = np.cross(arm, normal_force(seen, face)[:, None] * axes[..., 2])
     none = np.zeros_like(arm)
     return np.nan_to_num(seen.frames.between(face, none, none, moment))
+
+
+def bed_inset(normal, compliance, turn, face, tangent=0):
+    """How far within the edge an elastic bed without tension bears: ``sqrt(2 N c / (9 L phi))`` [m], Winkler's.
+
+    Parameters
+    ----------
+    normal, turn : float64 arrays or numbers
+        Normal force N [N], not negative, and rotation phi of the joint [rad], above zero.
+    compliance : float
+        Closure by pressure, c [m3/N].
+    face : Face
+        Its edges are L long; the inset is two thirds of its half width at most.
+    tangent : int
+        Along which the edge lies off the middle.
+    """
+    length, width = np.ptp(face.corners[:, 1 - tangent]), np.ptp(face.corners[:, tangent])
+    return np.minimum(np.sqrt(2.0 * normal * compliance / (9.0 * length * turn)), _WIDEST * 0.5 * width)
 
 
 def friction_against_slip(seen, face):
