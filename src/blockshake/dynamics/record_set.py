@@ -78,7 +78,7 @@ def record_files(source):
 
 
 def read_records(source):
-    """Records of a folder, by name; of a table, row by row; or the one motion that ``source`` is.
+    """`SetRecord` of a folder, by name; of a table, row by row; or of the one motion that ``source`` is.
 
     Parameters
     ----------
@@ -87,10 +87,6 @@ def read_records(source):
         PEER's velocities and displacements of the same records are passed over); a CSV table with the
         column ``file``, a path from the table's folder or a shipped name, and optionally ``scale`` [1] or ``level``, in
         the unit of the measure; or what `load_motion` reads.
-
-    Returns
-    -------
-    tuple of SetRecord
 
     Raises
     ------
