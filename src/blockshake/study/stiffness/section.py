@@ -69,7 +69,7 @@ def _stiffness_of_samples(stiffness, of):
 
 
 def plot_waves(waves):
-    """Displacement of a tower's blocks after a step of velocity, with the arrivals: the paper's Fig. 9, of `wave_tests`."""
+    """Displacement of a tower's blocks after a step of velocity, with the arrivals; the paper's Fig. 9."""
     figure = new_figure(0.075)
     panels = figure.subplots(1, waves.sizes["direction"], squeeze=False)[0]
     for axes, direction in zip(panels, waves["direction"].values, strict=True):
