@@ -169,10 +169,10 @@ def explain_lift(effect, slabs):
     prior = np.array([0.0, -1.0])[:, None]
     moved = logsumexp(logs[:, 1:] + prior) - np.log(2 * (logs.shape[1] - 1))
     gain = float(moved - logsumexp(logs[:, :1] + prior))
-    return Explanation(effect.name, "all", gain, _ratios(effect, slabs))
+    return Explanation(effect.name, "all", gain, _ratios(slabs))
 
 
-def _ratios(effect, slabs):
+def _ratios(slabs):
     """`Fit` of the vertical by the horizontal motion, by delay; what is not in proportion is coloured noise."""
     covariances = []
     for slab in slabs:
