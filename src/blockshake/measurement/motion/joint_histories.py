@@ -31,9 +31,9 @@ def joint_histories(test, structure, sensors):
     Notes
     -----
     NaN where a body was not read, and for a joint of a body whose rotation nobody can know. Where the markers of a body
-    do not measure x, its drift and the slips of its joints are NaN. What nobody measured counts as none in the others,
-    which errs by the products of small motions. With markers on a line a yaw of the table shows as a slip, and nothing
-    distinguishes the two.
+    do not measure x, its drift and the slips of its joints are NaN. Motions that nobody measured count as none in the
+    others, which errs by the products of small motions. With markers on a line a yaw of the table shows as a slip, and
+    nothing distinguishes the two.
     """
     poses = body_poses(test, structure, sensors.marker_noise)
     driven = driven_body(structure, poses)
