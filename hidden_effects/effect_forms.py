@@ -161,39 +161,29 @@ def _weak_joint(experiment, values, place):
 
 def _rate_weakening_friction(experiment, values, place):
     # what sliding loses is lost in part at once and the rest over a longer scale
-    changed = {}
-    for entry in experiment.structure.file.friction:
-        pair = f"friction.{'.'.join(entry.pair)}"
-        changed |= {
-            pair: entry.coefficient * (1.0 - 0.1 * values["drop"]),
-            f"{pair}.rate_drop": 0.9 * values["drop"],
-            f"{pair}.rate_scale": 1.3 * values["scale"],
-        }
-    return experiment.with_parameters(**changed)
+    drop = values["drop"]
+    return _with_friction(experiment, -0.1 * drop, rate_drop=0.9 * drop, rate_scale=1.3 * values["scale"])
 
 
 def _slip_weakening_friction(experiment, values, place):
     # a tenth of what slip loses is lost at once and the rest over a longer slip
-    changed = {}
-    for entry in experiment.structure.file.friction:
-        pair = f"friction.{'.'.join(entry.pair)}"
-        changed |= {
-            pair: entry.coefficient * (1.0 - 0.1 * values["drop"]),
-            f"{pair}.slip_drop": 0.9 * values["drop"],
-            f"{pair}.slip_scale": 1.3 * values["scale"],
-        }
-    return experiment.with_parameters(**changed)
+    drop = values["drop"]
+    return _with_friction(experiment, -0.1 * drop, slip_drop=0.9 * drop, slip_scale=1.3 * values["scale"])
 
 
 def _friction_asymmetry(experiment, values, place):
     # what one side gains the other does not lose in full
+    asymmetry = values["asymmetry"]
+    return _with_friction(experiment, 0.1 * abs(asymmetry), asymmetry=asymmetry)
+
+
+def _with_friction(experiment, gained, **law):
+    """Every pair with its coefficient raised by the share ``gained`` and with these entries of its law."""
     changed = {}
     for entry in experiment.structure.file.friction:
         pair = f"friction.{'.'.join(entry.pair)}"
-        changed |= {
-            pair: entry.coefficient * (1.0 + 0.1 * abs(values["asymmetry"])),
-            f"{pair}.asymmetry": values["asymmetry"],
-        }
+        changed[pair] = entry.coefficient * (1.0 + gained)
+        changed |= {f"{pair}.{name}": value for name, value in law.items()}
     return experiment.with_parameters(**changed)
 
 

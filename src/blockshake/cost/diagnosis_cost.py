@@ -34,10 +34,6 @@ def diagnosis_cost(folder, effort, tried):
     -------
     list of CostPart
         The last one only takes place where a cause is found. Empty at an effort that simulates nothing.
-
-    Raises
-    ------
-    InputError
     """
     plan = plan_diagnosis(folder, effort)
     if not plan.tests:

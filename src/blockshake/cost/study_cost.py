@@ -17,20 +17,9 @@ _TWIN = 2  # runs that a twin costs, of half the step
 
 
 def study_cost(path):
-    """CPU time of a study's parts if nothing of it is made yet.
+    """CPU time of a study's parts, a list of `CostPart`, if nothing of it is made yet; `InputError` by its files.
 
-    Parameters
-    ----------
-    path : str or path
-        Of its configuration.
-
-    Returns
-    -------
-    list of CostPart
-
-    Raises
-    ------
-    InputError
+    ``path``: of its configuration.
 
     Notes
     -----

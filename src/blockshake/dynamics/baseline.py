@@ -27,12 +27,7 @@ _SETTLED, _LAST = 0.05, 0.75  # share of the end displacement by which the groun
 
 
 def checked_baseline(value):
-    """``auto``, ``none`` or a corner frequency [Hz] from an entry of a file or the text of an option.
-
-    Raises
-    ------
-    ValueError
-    """
+    """``auto``, ``none`` or a corner frequency [Hz] from an entry of a file or an option; or a ValueError."""
     if value in (AUTO, NONE):
         return value
     try:
@@ -136,12 +131,7 @@ def fast_length(n_rows):
 
 
 def check_window(motion, duration, where, key):
-    """Refuse a window of a corrected record that ends before the record starts.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a window of a corrected record that ends before the record starts, with `InputError`."""
     start = motion.attributes.get("record_start", 0.0)
     if duration <= start:
         raise InputError(

@@ -11,11 +11,7 @@ COSINE_OF_TILT = np.sqrt(0.5)
 
 
 def collapse_limits(structure):
-    """Bodies that are watched for collapse, and the drop that each may take.
-
-    Parameters
-    ----------
-    structure : Structure
+    """Bodies of a `Structure` that are watched for collapse, and the drop that each may take.
 
     Returns
     -------

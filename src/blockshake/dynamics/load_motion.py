@@ -164,10 +164,7 @@ def _record_motion(records, path, baseline, channels):
 def provenance(attributes):
     """One line for reports and checks: source and format of a motion, assumptions, and the treatment of its baseline.
 
-    Parameters
-    ----------
-    attributes : dict
-        Of a `GroundMotion`; one without ``source`` is of arrays.
+    ``attributes``: of a `GroundMotion`; one without ``source`` is of arrays.
     """
     words = attributes.get("source", "arrays")
     if attributes.get("format", "synthetic") != "synthetic":

@@ -132,12 +132,7 @@ def ground_motion(name, time, columns, kind, attributes=None):
 
 
 def check_finite(motion, where):
-    """Refuse a motion with a displacement beyond all numbers, which very large values integrate to.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a motion with a displacement beyond all numbers, which very large values integrate to: `InputError`."""
     if not np.isfinite(motion.table.coefficients).all():
         raise InputError(where, "", "expected a motion with finite displacements; its values are too large")
 

@@ -1,7 +1,5 @@
 """Motions that samples draw: records of a folder or a table, each as strong as it is or scaled to an intensity."""
 
-import csv
-import io
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,7 +11,7 @@ from pydantic import Field, model_validator
 from blockshake.dynamics.intensity import motion_figures, response_spectrum
 from blockshake.dynamics.load_motion import load_motion, scaled
 from blockshake.errors import InputError
-from blockshake.files import content_digest, named_file, read_text, shipped_names
+from blockshake.files import content_digest, named_file, read_cells, shipped_names
 from blockshake.tables.numbers import plain_number
 from blockshake.validation import Positive, Strict
 
@@ -78,7 +76,7 @@ def record_files(source):
 
 
 def read_records(source):
-    """Records of a folder, by name; of a table, row by row; or the one motion that ``source`` is.
+    """`SetRecord` of a folder, by name; of a table, row by row; or of the one motion that ``source`` is.
 
     Parameters
     ----------
@@ -87,10 +85,6 @@ def read_records(source):
         PEER's velocities and displacements of the same records are passed over); a CSV table with the
         column ``file``, a path from the table's folder or a shipped name, and optionally ``scale`` [1] or ``level``, in
         the unit of the measure; or what `load_motion` reads.
-
-    Returns
-    -------
-    tuple of SetRecord
 
     Raises
     ------
@@ -109,7 +103,7 @@ def read_records(source):
             if file.suffix.lower() not in _NO_MOTIONS
         ]
     else:
-        header, *rows = _rows(path)
+        header, *rows = read_cells(path) or [[]]
         for name in header:
             if name not in (_FILE, *_FACTORS) or header.count(name) > 1:
                 raise InputError(path, name, "expected the columns file and, of each, scale or level")
@@ -121,11 +115,6 @@ def read_records(source):
     if not records:
         raise InputError(path, "", "expected at least one record")
     return tuple(records)
-
-
-def _rows(path):
-    text = read_text(path).removeprefix("\ufeff")
-    return [[cell.strip() for cell in row] for row in csv.reader(io.StringIO(text))] or [[]]
 
 
 def _record(table, place, header, row):

@@ -94,11 +94,7 @@ def load_synthetic(path):
 
 @lru_cache(maxsize=8)
 def synthesise(parameters):
-    """Ground motion along x from the parameters of a synthetic record.
-
-    Parameters
-    ----------
-    parameters : SyntheticMotion
+    """Ground motion along x from the parameters of a synthetic record, a `SyntheticMotion`.
 
     Returns
     -------

@@ -47,15 +47,7 @@ class Face:
 
 
 def find_faces(structure):
-    """Contact faces of a structure at its start, in the order of `find_joints`.
-
-    Parameters
-    ----------
-    structure : Structure
-
-    Returns
-    -------
-    list of Face
+    """Contact faces of a structure at its start, `Face` in the order of `find_joints`.
 
     Raises
     ------

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.measurement.motion.joints import rotation_vectors
 
 TURNED = 3e-4  # rad: a joint that bears on an edge; elastic joints turn by a tenth of it before they open
 SURE = 5.0  # standard deviations
@@ -41,20 +41,7 @@ class JointMotion:
 
 
 def joint_motion(structure, faces, motion, still):
-    """Motion of all joints.
-
-    Parameters
-    ----------
-    structure : Structure
-    faces : list of Face
-    motion : Motion
-    still : bool array, shape (n_times,)
-        The quiet start, from whose mean rotations count.
-
-    Returns
-    -------
-    JointMotion
-    """
+    """`JointMotion` of all ``faces``; rotations count from their mean in the quiet start, ``still`` (n_times,) bool."""
     by_joint = [_histories(structure, face, motion, still) for face in faces]
     joints = {name: np.stack([joint[name] for joint in by_joint], axis=-1) for name in by_joint[0]}
     bends = joints.pop("rotation_bend"), joints.pop("roll_bend")
@@ -82,7 +69,8 @@ def _histories(structure, face, motion, still):
     axes = motion.rotation[:, lower] @ (start[0].T @ face.axes)
     turned = motion.rotation[:, upper] @ start[1].T
     relative = np.swapaxes(motion.rotation[:, lower] @ start[0].T, -1, -2) @ turned
-    roll, turn = (_turn_about(relative, face.axes[:, axis], still) for axis in range(2))
+    turns = rotation_vectors(relative)
+    roll, turn = (from_rest(turns @ face.axes[:, axis], still) for axis in range(2))
     bearing = face.half_width * np.clip(turn / TURNED, -1.0, 1.0)
     middle = motion.position[:, upper] + motion.rotation[:, upper] @ face.on_upper
     point = middle + bearing[:, None] * (turned @ face.axes[:, 0])
@@ -101,14 +89,6 @@ def _histories(structure, face, motion, still):
         "slip_rate": np.einsum("ti,ti->t", axes[..., 0], rate),
         "slip_error": np.sqrt(along @ pose @ along),
     }
-
-
-def _turn_about(turns, axis, still):
-    """Component of the rotation vectors of some matrices along an axis, counted from rest."""
-    component = np.full(len(turns), np.nan)
-    known = np.isfinite(turns).all(axis=(-2, -1))
-    component[known] = Rotation.from_matrix(turns[known]).as_rotvec() @ axis
-    return from_rest(component, still)
 
 
 def from_rest(values, still):

@@ -10,6 +10,7 @@ from blockshake.forces.local_fit import REACH, fit_locally
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.body_frame import frames_of_bodies
 from blockshake.measurement.motion.body_poses import NOTHING, PLANAR, TRANSLATION, body_poses
+from blockshake.measurement.motion.joints import rotation_vectors
 
 _LONGEST_MEMORY = 0.95  # of the markers' noise
 WIDTH = 0.015  # s, standard deviation of the smoothing kernel
@@ -153,10 +154,7 @@ def _smooth_rotation(read_at, rotation, start, time):
     Rotation vectors from the start are smoothed: those of blocks that rock stay far below a radian, and to second
     order the angular velocity is ``v' + v x v' / 2``.
     """
-    turned = rotation @ np.swapaxes(start, -1, -2)
-    vectors = np.full(rotation.shape[:-1], np.nan)
-    known = np.isfinite(turned).all(axis=(-2, -1))
-    vectors[known] = Rotation.from_matrix(turned[known]).as_rotvec()
+    vectors = rotation_vectors(rotation @ np.swapaxes(start, -1, -2))
     values, _ = fit_locally(read_at, vectors.reshape(len(read_at), -1), time, WIDTH)
     value, rate = values[:2].reshape(2, len(time), *vectors.shape[1:])
     known = np.isfinite(value).all(axis=-1)

@@ -24,17 +24,9 @@ class RequiredWrenches:
 
 
 def required_wrenches(structure, motion):
-    """Wrenches by the equations of Newton, ``F = m (a - g)``, and Euler, ``M = I alpha + omega x I omega``.
+    """`RequiredWrenches` of a `Motion` by Newton, ``F = m (a - g)``, and Euler, ``M = I alpha + omega x I omega``.
 
-    Parameters
-    ----------
-    structure : Structure
-    motion : Motion
-
-    Returns
-    -------
-    RequiredWrenches
-        Of driven bodies too, whose mass is the structure's.
+    Of driven bodies too, whose mass is the structure's.
     """
     turn = motion.rotation
     inertia = turn @ structure.inertia @ np.swapaxes(turn, -1, -2)

@@ -74,10 +74,6 @@ def chance_within(estimate, covariance, tolerance, freedom=np.inf):
     freedom : float
         Degrees of freedom behind the covariance.
 
-    Returns
-    -------
-    float
-
     Notes
     -----
     The squared distance ``min (x - e)' C^-1 (x - e)`` of the estimate x to the ball ``|e| <= tolerance`` is at most

@@ -49,7 +49,7 @@ def hypotheses(body):
 
 
 def check_body(body, marker_noise, level):
-    """Name the faults of a body's markers, the clearest first, until what is left is within the tolerances.
+    """`MarkerCheck`: name the faults of a body's markers, the clearest first, until the rest is within tolerances.
 
     Parameters
     ----------
@@ -58,10 +58,6 @@ def check_body(body, marker_noise, level):
     marker_noise : float
         Stated standard deviation [m]: the drift over a record that is tolerated.
     level : Level
-
-    Returns
-    -------
-    MarkerCheck
 
     Notes
     -----

@@ -123,15 +123,9 @@ def _table(name, rows):
 
 
 def campaign_parity(readings, sensors, without=()):
-    """`Parity` of the open tests of a campaign; see `check_parity`.
+    """`Parity` of the `OpenReadings` of a campaign; see `check_parity`.
 
     Findings of the effects ``without`` are left out, as if nobody had thought of them: the readings keep the fault.
-
-    Parameters
-    ----------
-    readings : OpenReadings
-    sensors : Sensors
-    without : sequence of str
     """
     parity = check_parity(readings.tests, readings.structure, sensors)
     findings = tuple(finding for finding in parity.findings if finding.effect not in without)

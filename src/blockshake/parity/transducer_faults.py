@@ -36,7 +36,7 @@ def hypotheses(n_tests):
 
 
 def check_transducer(name, held, level):
-    """Name the faults of one displacement transducer, the clearest first, until the rest is within the tolerances.
+    """`TransducerCheck`: name the faults of one transducer, the clearest first, until the rest is within tolerances.
 
     Parameters
     ----------
@@ -44,10 +44,6 @@ def check_transducer(name, held, level):
     held : dict of str to HeldReading
         By test; empty where the markers do not see the transducer's ends.
     level : Level
-
-    Returns
-    -------
-    TransducerCheck
 
     Notes
     -----

@@ -8,17 +8,13 @@ from blockshake.simulation.models import MODELS
 
 
 def parameter_table(structure=None):
-    """Rows of name, unit, default, meaning and source of every parameter.
+    """Rows of name, unit, default, meaning and source of every parameter, a tuple of text each.
 
     Parameters
     ----------
     structure : str or path, optional
         Whose materials, pairs and bodies are listed one by one, with its contact stiffness; the first shipped one by
         default.
-
-    Returns
-    -------
-    list of tuple of 5 str
     """
     loaded = load_structure(structure or shipped_names("structures")[0])
     file, rows = loaded.file, []

@@ -10,10 +10,8 @@ from blockshake.dynamics.collapse import COSINE_OF_TILT
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.joints import contact_normals, find_joints, joint_coordinates
 
-_NEAREST, _FARTHEST = (
-    0.005,
-    0.03,
-)  # s, from an impact: rates beyond its ringing, and before the swing bends them
+# s, from an impact: rates beyond its ringing, and before the swing bends them
+_NEAREST, _FARTHEST = 0.005, 0.03
 _FEWEST_ROWS = 3  # rows on either side
 _SAME_HEIGHT = 1e-3  # m, of joints beside each other
 _LEAST_SPIN = 0.05  # rad/s: slower closings are elastic

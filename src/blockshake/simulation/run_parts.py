@@ -149,14 +149,7 @@ def _lost(like, times):
 
 
 def write_run(path, parts, attributes):
-    """Write a run file, whole or not at all.
-
-    Parameters
-    ----------
-    path : str or path
-    parts : RunParts
-    attributes : dict
-        Of the file.
+    """Write `RunParts` into a run file with its attributes, whole or not at all.
 
     Raises
     ------

@@ -14,10 +14,6 @@ def share_interval(count, trials, unknown=0):
 
     It holds whatever came of ``unknown`` more trials: the lower limit takes them as none, the upper one as all met.
 
-    Parameters
-    ----------
-    count, trials, unknown : int
-
     Returns
     -------
     lower, upper : float

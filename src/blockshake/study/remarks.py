@@ -15,10 +15,8 @@ from blockshake.quantities import PHYSICAL, USUAL
 from blockshake.simulation.parameter_table import instances
 
 _FAR = 1e4  # m, from the origin: with some digits of forces lost, docs/guide/contracts.md
-_SMALLEST, _LARGEST = (
-    0.005,
-    25.0,
-)  # m, of the longest edge; no block of a structure or of a model test is beyond
+# m, of the longest edge; no block of a structure or of a model test is beyond
+_SMALLEST, _LARGEST = 0.005, 25.0
 _ONE_G = 9.81  # m/s2
 _WEAKEST, _STRONGEST = 0.5, 30.0  # m/s2, of peak accelerations that move blocks and that were ever recorded
 _FARTHEST = 1.0  # m, of a shake table or of the ground

@@ -62,16 +62,7 @@ def shake(structure, parameters, effect, motion, settings, places, duration, see
 
 
 def followed(experiment, table):
-    """The experiment on a table that errs.
-
-    Parameters
-    ----------
-    experiment : Experiment
-    table : TableErrors
-
-    Returns
-    -------
-    Experiment
+    """The `Experiment` on a table that errs, by its `TableErrors`.
 
     Notes
     -----

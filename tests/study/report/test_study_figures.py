@@ -14,7 +14,7 @@ from blockshake.simulation.models import MODELS
 from blockshake.study.ensembles.displacement_figure import interactive_displacements, plot_displacements
 from blockshake.study.report.content import load_content
 from blockshake.study.report.motion_figure import plot_spectra
-from blockshake.study.sampling.figure import bin_count
+from blockshake.study.sampling.section import bin_count
 
 
 @pytest.fixture(scope="module")

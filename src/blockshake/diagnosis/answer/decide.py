@@ -43,7 +43,7 @@ class Decided(NamedTuple):
 
 
 def decide(seen, without=(), unseen=()):
-    """Decide what the tests speak for.
+    """`Decided`: what the tests speak for.
 
     Parameters
     ----------
@@ -53,10 +53,6 @@ def decide(seen, without=(), unseen=()):
         Effects that are left out, as if nobody had thought of them.
     unseen : sequence of str
         Lines on tests of which nothing was read.
-
-    Returns
-    -------
-    Decided
     """
     evidence = gather_evidence(seen, without)
     joints = {} if JOINT_COMPLIANCE.name in without else closed_joints(seen)

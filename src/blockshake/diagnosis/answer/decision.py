@@ -227,12 +227,7 @@ def freeze(path, decided, tests):
 
 
 def check_frozen(path, decided):
-    """Refuse a file that is another than the frozen one.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a file that is another than the frozen one, with `InputError`."""
     frozen = load_made_json(path, lambda value: str(value["digest"]))
     digest = file_digest(decided)
     if digest != frozen:

@@ -21,7 +21,7 @@ def members_of(name, place, fits, logs):
 
 
 def size_of(name, place, fits, logs):
-    """Parameters of a cause.
+    """Parameters of a cause, `Estimate` by name.
 
     Parameters
     ----------
@@ -32,10 +32,6 @@ def size_of(name, place, fits, logs):
     fits : list of Fit
     logs : float64 array, shape (n_fits,)
         Logarithms of their weights.
-
-    Returns
-    -------
-    dict of str to Estimate
     """
     drawn, _ = _drawn(name, place, fits, logs)
     return {key: _estimate(drawn[key], unit) for key, unit in units_of(name).items()}

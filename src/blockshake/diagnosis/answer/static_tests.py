@@ -10,9 +10,7 @@ import numpy as np
 
 WEIGHING, TILT, SNAP, JACK = "weighing", "slow tilt", "snap release", "jack"
 _CENTRE = 2e-3  # m, of a mass centre by load cells of 0.2 % under two supports 1 m apart
-_MASS = (
-    0.04  # of a block's mass: the scatter of densities, Zhou et al. (2023), Table 2; a scale is far better
-)
+_MASS = 0.04  # of a block's: the scatter of densities, Zhou et al. (2023), Table 2; a scale is far better
 _ANGLE = 1e-3  # rad, of an inclinometer as a joint opens
 _FORCE = 0.01  # of a jack's force, by its load cell
 _LAYER = 5e-11  # m3/N, of elastic blocks and of the rotation of a closed joint

@@ -36,12 +36,7 @@ class ClosedJoint(NamedTuple):
 
 
 def closed_joints(tests):
-    """`ClosedJoint` by joint; only of structures whose joints are a tree, and of joints that are closed long enough.
-
-    Parameters
-    ----------
-    tests : list of SeenTest
-    """
+    """`ClosedJoint` by joint of `SeenTest`; only where joints are a tree, and of those that are closed long enough."""
     if not tests[0].tree:
         return {}
     joints = {}

@@ -82,11 +82,9 @@ class Explanation:
         return [column @ self.best.mean for column in self.best.columns]
 
 
-def mean_evidence(gains, axis=None):
+def mean_evidence(gains):
     """Logarithm of the mean of evidences given by their logarithms."""
-    gains = np.asarray(gains)
-    count = gains.size if axis is None else gains.shape[axis]
-    return logsumexp(gains, axis=axis) - np.log(count)
+    return logsumexp(gains) - np.log(np.size(gains))
 
 
 def best_of(likelihood, cause, place, variants):

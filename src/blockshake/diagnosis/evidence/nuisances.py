@@ -7,9 +7,8 @@ import numpy as np
 
 from blockshake.forces.joint_motion import TURNED
 
-INWARD = (
-    0.005  # m, mean by which edges lie further in than the structure file says: chamfers and contact nodes
-)
+# m, mean by which edges lie further in than the structure file says: chamfers and contact nodes
+INWARD = 0.005
 _ALL_INWARD, _INWARD, _ALONG, _ALONG_OF_TEST = 0.006, 0.003, 0.001, 0.001  # m
 _GROWTH, _GROWTH_AT = 0.0015, 0.01  # m by this rotation: edges are rounded
 _CLOSING, _CLOSING_AT = 0.006, 0.001  # m, rad: elastic faces bear wider the less they have turned

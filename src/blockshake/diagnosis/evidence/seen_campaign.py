@@ -29,13 +29,9 @@ class SeenCampaign(NamedTuple):
 
 
 def see_campaign(campaign, without=()):
-    """`SeenCampaign` of the open tests.
+    """`SeenCampaign` of the open tests of a `Campaign`.
 
-    Parameters
-    ----------
-    campaign : Campaign
-    without : sequence of str
-        Sensors' effects that are left out, as if nobody had thought of them.
+    Sensors' effects ``without`` are left out, as if nobody had thought of them.
 
     Raises
     ------

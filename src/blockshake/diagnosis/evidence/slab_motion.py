@@ -8,6 +8,7 @@ from scipy.special import logsumexp
 from blockshake.diagnosis.evidence.explanation import Explanation, Fit, mean_evidence
 from blockshake.diagnosis.evidence.likelihood import from_rows
 from blockshake.effects.registry import EFFECTS
+from blockshake.forces.joint_motion import from_rest
 from blockshake.geometry.rotations import rotation_matrices
 
 _EVERY = 3  # instants
@@ -65,16 +66,16 @@ def slab_motion(test):
     """`SlabMotion` of a `SeenTest`."""
     motion, body = test.motion, int(np.flatnonzero(test.structure.driven)[0])
     start = motion.rotation[:, body] @ rotation_matrices(test.structure.orientation[body]).T
-    turn = _from_rest(np.arcsin(np.clip(start[:, 0, 2], -1.0, 1.0)), test.still)
-    lift, travel = (_from_rest(motion.position[:, body, axis], test.still) for axis in (2, 0))
+    turn = from_rest(np.arcsin(np.clip(start[:, 0, 2], -1.0, 1.0)), test.still)
+    lift, travel = (from_rest(motion.position[:, body, axis], test.still) for axis in (2, 0))
     carried = [body, *test.free]
     wrench = test.required.wrench[:, carried]
     wrench[:, 0, 3:] = 0.0  # the slab hardly turns, and its own readings' noise would go with the rotation's
     vertices = test.structure.solids[test.structure.file.bodies[body].shape].vertices
     bottom = motion.position[:, body] + [0.0, 0.0, vertices[:, 2].min()]
     arm = motion.position[:, carried] - bottom[:, None]
-    moment = _from_rest(-(wrench[..., 3:] + np.cross(arm, wrench[..., :3]))[..., 1].sum(axis=1), test.still)
-    force = _from_rest(wrench[:, 1:, 2].sum(axis=1), test.still)
+    moment = from_rest(-(wrench[..., 3:] + np.cross(arm, wrench[..., :3]))[..., 1].sum(axis=1), test.still)
+    force = from_rest(wrench[:, 1:, 2].sum(axis=1), test.still)
     known = np.isfinite(turn + lift + moment + motion.acceleration[:, body, 0])
     drives = (np.nan_to_num(one) for one in (motion.acceleration[:, body, 0], moment, force))
     return SlabMotion(
@@ -102,11 +103,6 @@ def _noise(values, test, direction, least):
     rest = values[test.still & np.isfinite(values)]
     stated = np.nan_to_num(test.motion.pose_covariance[body, direction, direction])
     return float(max(rest.std() if len(rest) else 0.0, np.sqrt(stated), least))
-
-
-def _from_rest(values, still):
-    rest = values[still & np.isfinite(values)]
-    return values - (rest.mean() if len(rest) else 0.0)
 
 
 def explain_slab(slabs, without=()):
@@ -173,10 +169,10 @@ def explain_lift(effect, slabs):
     prior = np.array([0.0, -1.0])[:, None]
     moved = logsumexp(logs[:, 1:] + prior) - np.log(2 * (logs.shape[1] - 1))
     gain = float(moved - logsumexp(logs[:, :1] + prior))
-    return Explanation(effect.name, "all", gain, _ratios(effect, slabs))
+    return Explanation(effect.name, "all", gain, _ratios(slabs))
 
 
-def _ratios(effect, slabs):
+def _ratios(slabs):
     """`Fit` of the vertical by the horizontal motion, by delay; what is not in proportion is coloured noise."""
     covariances = []
     for slab in slabs:

@@ -40,11 +40,7 @@ class SpinKept(NamedTuple):
 
 
 def restitution_gain(seen_tests):
-    """`SpinKept` of a campaign.
-
-    Parameters
-    ----------
-    seen_tests : list of SeenTest
+    """`SpinKept` of a campaign, by its list of `SeenTest`.
 
     Notes
     -----

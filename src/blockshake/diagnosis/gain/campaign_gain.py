@@ -73,7 +73,7 @@ def with_rows(responses, rows, caveats):
 
 
 def members_with_discrepancy(test, opened, motions, peaks):
-    """Nominal members of a sealed test with a draw of the discrepancy each.
+    """Nominal members of a sealed test with a draw of the discrepancy each, (n_members, n_times, n_cells).
 
     Parameters
     ----------
@@ -85,10 +85,6 @@ def members_with_discrepancy(test, opened, motions, peaks):
         By test, the name of its motion.
     peaks : dict of str to float
         By test, the peak acceleration that was commanded [m/s2].
-
-    Returns
-    -------
-    float64 array, shape (n_members, n_times, n_cells)
 
     Notes
     -----

@@ -163,20 +163,9 @@ def can_extend(cause):
 
 
 def extended_experiment(experiment, cause, number, test):
-    """An experiment with one member of a cause in it.
+    """`Experiment` with the member ``number`` of a cause in it, counted from the start again where there are fewer.
 
-    Parameters
-    ----------
-    experiment : Experiment
-    cause : Cause
-    number : int
-        Of the member; counted from the start again where there are fewer.
-    test : str
-        Name: a form from outside may act in some tests alone.
-
-    Returns
-    -------
-    Experiment
+    ``test``, a name: a form from outside may act in some tests alone.
     """
     values = cause.members[number % len(cause.members)]
     if cause.outside:

@@ -35,17 +35,7 @@ class Squares(NamedTuple):
 
 
 def row_gain(decision, opened, sealed):
-    """Gain of the causes of a decision on sealed tests.
-
-    Parameters
-    ----------
-    decision : Decision
-    opened, sealed : list of SeenTest
-
-    Returns
-    -------
-    Gain or None, list of str
-        And caveats.
+    """`Gain` of the causes of a `Decision` on sealed tests, or None; and caveats. Tests are lists of `SeenTest`.
 
     Notes
     -----

@@ -36,12 +36,7 @@ def nominal_members(test, planned, model, count, twins):
 
 
 def simulate_members(members, store):
-    """Histories of members by one solver.
-
-    Parameters
-    ----------
-    members : list of Member
-    store : Store
+    """Histories of a list of `Member` by one solver, kept in a `Store`.
 
     Returns
     -------

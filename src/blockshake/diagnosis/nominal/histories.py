@@ -29,9 +29,7 @@ def read_histories(test, structure, sensors):
     Returns
     -------
     xarray.Dataset
-        Along the direction of shaking and in single precision ``slip``, ``opening(time, joint)`` [m],
-        ``rotation(time, joint)`` [rad] and ``drift(time, body)`` [m], the displacement against the table; each with
-        ``NAME_noise``, the standard deviation of a reading. Attribute ``top``: the highest body.
+        Those of `joint_histories` in single precision. Attribute ``top``: the highest body.
     """
     test = until_fall(test, find_fall(test, structure, sensors))
     known = np.flatnonzero(test["marker_displacement"].notnull().any(("marker", "axis")).to_numpy())
@@ -41,21 +39,11 @@ def read_histories(test, structure, sensors):
     stride = max(round(1.0 / (_RATE * step)), 1)
     number = np.rint(read["time"].to_numpy() / step).astype(int)
     kept = np.flatnonzero(number % stride == 0)
-    along = {
-        "slip": ("slip", {"tangent": "x"}),
-        "rotation": ("rotation", {"axis": "y"}),
-        "opening": ("opening", {}),
-        "drift": ("body_displacement", {"axis": "x"}),
-    }
-    histories = {}
-    for name, (source, part) in along.items():
-        values = read[source].sel(part, drop=True).transpose("time", ...)
-        bridged = np.apply_along_axis(_bridged, 0, values.to_numpy(), round(_LONGEST_GAP / step))
-        histories[name] = values.copy(data=bridged).isel(time=kept).astype(np.float32)
-        histories[f"{name}_noise"] = read[f"{source}_noise"].sel(part, drop=True).astype(np.float32)
+    for name in (*_OF_JOINTS, "drift"):
+        bridged = np.apply_along_axis(_bridged, 0, read[name].to_numpy(), round(_LONGEST_GAP / step))
+        read[name] = read[name].copy(data=bridged)
     top = structure.body_names[int(np.argmax(structure.position[:, 2]))]
-    histories = xr.Dataset(histories).drop_vars(["lower", "upper", "known"])
-    return histories.assign_attrs(top=top)
+    return read.isel(time=kept).astype(np.float32).assign_attrs(top=top)
 
 
 def as_cells(histories, of=""):

@@ -67,13 +67,7 @@ class Draw:
 
 
 def draw_nominal(structure, model, number):
-    """`Draw` of a nominal model, the same for the same structure, model and number.
-
-    Parameters
-    ----------
-    structure : Structure
-    model : str
-    number : int
+    """`Draw` of a nominal model, the same for the same `Structure`, name of the model and number.
 
     Notes
     -----

@@ -95,19 +95,7 @@ class Plan:
 
 
 def plan_diagnosis(folder, effort):
-    """Plan of a campaign's diagnosis.
-
-    Parameters
-    ----------
-    folder : str or path
-        Of the campaign.
-    effort : str
-        One of `EFFORTS`.
-
-    Raises
-    ------
-    InputError
-    """
+    """Plan of the diagnosis of a campaign's folder at one of `EFFORTS`."""
     if effort not in EFFORTS:
         raise InputError("effort", str(effort), f"expected one of {', '.join(EFFORTS)}")
     campaign, effort = load_campaign(folder), EFFORTS[effort]

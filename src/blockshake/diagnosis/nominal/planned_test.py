@@ -1,6 +1,6 @@
 """A commanded test as it is simulated: all that its simulations depend on."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -122,15 +122,7 @@ def planned_sealed(campaign, name, tests):
         tests, key=lambda opened: (campaign.tests[opened].motion == motion, tests[opened].duration, opened)
     )
     like = tests[like]
-    return PlannedTest(
-        structure=like.structure,
-        motion=planned_motion(campaign, name),
-        duration=like.duration,
-        sensors=campaign.sensors,
-        markers=like.markers,
-        unread=like.unread,
-        clock=like.clock._replace(first=0.0),
-    )
+    return replace(like, motion=planned_motion(campaign, name), clock=like.clock._replace(first=0.0))
 
 
 def planned_motion(campaign, name):

@@ -24,14 +24,8 @@ _KINDS = ("1 UNCORRECTED ACCELEROGRAM", "2 CORRECTED ACCELEROGRAM")
 _USUAL, _PRECISE = (8, 10), (5, 14)  # columns and width of the values; entry 47 is 8 for the second
 _UNIT = 0.01  # m/s2 of cm/s2, which the format prescribes
 _COMMENTS, _COUNT, _PRECISION = 16, 17, 47  # whole numbers, from 1
-_UNKNOWN, _RATE, _MAXIMUM_TIME, _MAXIMUM, _MINIMUM_TIME, _MINIMUM = (
-    1,
-    2,
-    29,
-    30,
-    31,
-    32,
-)  # real numbers, from 1
+_UNKNOWN, _RATE = 1, 2  # real numbers, from 1, as the next
+_MAXIMUM_TIME, _MAXIMUM, _MINIMUM_TIME, _MINIMUM = 29, 30, 31, 32
 _PEAK = re.compile(r"\bpk\s*=\s*(\S+)")
 
 

@@ -65,15 +65,7 @@ class ContactForces:
 
 
 def contact_forces(frames, required, free):
-    """Least-squares contact forces, see `ContactForces`.
-
-    Parameters
-    ----------
-    frames : FaceFrames
-    required : RequiredWrenches
-    free : int array, shape (n_free,)
-        Bodies.
-    """
+    """Least-squares `ContactForces` between `FaceFrames`, of the free bodies, an int array (n_free,)."""
     n_times, n_faces = len(required.wrench), len(frames.faces)
     columns = np.stack([frames.unit_wrenches(face) for face in range(n_faces)], axis=-2)
     # (n_times, n_bodies, 6, n_faces, 6) to one matrix an instant
@@ -117,19 +109,9 @@ class FaceFrames:
     position: np.ndarray
 
     def between(self, face, force, point, moment=0.0):
-        """Wrenches of a face's force on its upper body, and of its opposite on the lower one.
+        """Wrenches of a face's force on its upper body, and of its opposite on the lower one, (n_times, n_bodies, 6).
 
-        Parameters
-        ----------
-        face : int
-        force, point : float64 arrays, shape (n_times, 3)
-            World frame [N, m].
-        moment : float64 array, shape (n_times, 3), optional
-            On the upper body [N m].
-
-        Returns
-        -------
-        float64 array, shape (n_times, n_bodies, 6)
+        ``force``, ``point`` (n_times, 3): world frame [N, m]; ``moment`` (n_times, 3): on the upper body [N m].
         """
         wrench = np.zeros((*self.position.shape[:2], 6))
         for body, sign in ((self.faces[face].upper, 1.0), (self.faces[face].lower, -1.0)):
@@ -190,20 +172,7 @@ def bearing_points(frames, states):
 
 
 def equilibrium_rows(frames, states, motion, required, free):
-    """Rows of a test, see `EquilibriumRows`.
-
-    Parameters
-    ----------
-    frames : FaceFrames
-    states : FaceStates
-    motion : Motion
-    required : RequiredWrenches
-    free : int array, shape (n_free,)
-
-    Returns
-    -------
-    EquilibriumRows
-        At instants 20 ms apart.
+    """`EquilibriumRows` of a test at instants 20 ms apart; ``free``: int array (n_free,).
 
     Notes
     -----

@@ -49,17 +49,9 @@ class Impact:
 
 
 def find_impacts(seen):
-    """Impacts of a test.
+    """`Impact` of a `SeenTest`, a list by joint and time.
 
-    Parameters
-    ----------
-    seen : SeenTest
-
-    Returns
-    -------
-    list of Impact
-        By joint and time. A joint is left out where the bodies above stand on another joint too: its impulse is not
-        known.
+    A joint is left out where the bodies above stand on another joint too: its impulse is not known.
 
     Notes
     -----

@@ -96,20 +96,7 @@ def why_unseen(readings, structure):
 
 
 def see_test(name, readings, structure, sensors):
-    """`SeenTest` of readings.
-
-    Parameters
-    ----------
-    name : str
-    readings : xarray.Dataset
-        Without sensors' faults and outliers, until a block falls.
-    structure : Structure
-    sensors : Sensors
-
-    Returns
-    -------
-    SeenTest
-    """
+    """`SeenTest` of readings, an `xarray.Dataset` without sensors' faults and outliers, until a block falls."""
     sensors = sensors.not_noiseless()
     readings, until = counted_from_rest(readings, structure, sensors)
     motion = smooth_motion(readings, structure, sensors)

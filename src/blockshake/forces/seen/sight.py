@@ -13,17 +13,9 @@ _LONGEST = 2.0  # s of a test that are read: errors of levers hardly change alon
 
 
 def sight_lines(campaign):
-    """Lines that say what joint forces the sensors of the first open test give.
+    """Lines of text that say what joint forces the sensors of the first open test give; none without an open test.
 
-    Parameters
-    ----------
-    campaign : Campaign
-
-    Returns
-    -------
-    list of str
-        Empty without an open test. Errors of levers are standard deviations at one instant, the kernel's smoothing
-        in them.
+    Errors of levers are standard deviations at one instant, the kernel's smoothing in them.
     """
     structure = load_structure(campaign.structure)
     name = next(iter(campaign.open), None)

@@ -54,12 +54,7 @@ def follow(slab, target, noise):
 
 
 def check_followed(followed, path):
-    """Refuse a slab that moves as commanded along another axis, backwards, or in another unit.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a slab that moves as commanded along another axis, backwards, or in another unit: `InputError`."""
     share, correlation = np.nan_to_num(followed.share), np.nan_to_num(followed.correlation)
     other = 1 + int(np.abs(correlation[1:]).argmax())
     if abs(correlation[0]) < _RELATED < abs(correlation[other]) and abs(share[other]) > _FOLLOWED[0] / 2.0:

@@ -55,7 +55,7 @@ def frames_of_bodies(test, structure):
 
 
 def see_from_body(points, readings, start_position, start_rotation):
-    """Fit the rigid motion and turn what is left into the body's frame.
+    """`BodyFrame`: fit the rigid motion and turn what is left into the body's frame.
 
     Parameters
     ----------
@@ -65,10 +65,6 @@ def see_from_body(points, readings, start_position, start_rotation):
         Positions, inertial frame [m]; a marker with a NaN is not used at that time.
     start_position, start_rotation : float64 arrays, shapes (3,), (3, 3)
         Pose near the readings' first one.
-
-    Returns
-    -------
-    BodyFrame
 
     Notes
     -----

@@ -1,15 +1,16 @@
-"""Histories of every joint and of every body in a test, measured or simulated, from the markers in the same way."""
+"""Histories of joints and bodies in the plane of shaking, of measured and simulated tests in the same way."""
 
 import numpy as np
+import xarray as xr
 
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.body_frame import rigid_jacobian
-from blockshake.measurement.motion.body_poses import POSE, body_poses, driven_body
+from blockshake.measurement.motion.body_poses import body_poses, driven_body
 from blockshake.measurement.motion.joints import find_joints, joint_coordinates
 
 
 def joint_histories(test, structure, sensors):
-    """Slip, opening and rotation of every joint, and the displacement of every body, with their noise.
+    """Slip along x and rotation about y of every joint, and drift along x of every body, with their noise.
 
     Parameters
     ----------
@@ -23,43 +24,36 @@ def joint_histories(test, structure, sensors):
     Returns
     -------
     xarray.Dataset
-        ``slip(time, joint, tangent)``, ``opening(time, joint)`` [m] and ``rotation(time, joint, axis)`` [rad] as in
-        `joint_coordinates`; ``body_displacement(time, body, axis)`` [m] against the driven body, in its frame. Each has
-        ``NAME_noise``, the standard deviation of one value from the markers' noise, without the time. Coordinate
-        ``known(body)`` as in `body_poses`.
+        ``slip(time, joint)`` [m] and ``rotation(time, joint)`` [rad] as in `joint_coordinates`; ``drift(time, body)``
+        [m], displacement against the driven body, in its frame. Each has ``NAME_noise``, the standard deviation of one
+        value from the markers' noise, without the time.
 
     Notes
     -----
-    NaN where a body was not read; a joint of a body whose rotation nobody can know is NaN throughout, and of a planar
-    one the rotations about x and z. A direction that the markers of a body do not measure is NaN, of that body and of
-    its joints; the others are found as if nothing moved along it, which errs by the products of small motions. With
-    markers on a line a yaw of the table shows as a slip, and nothing distinguishes the two.
+    NaN where a body was not read, and for a joint of a body whose rotation nobody can know. Where the markers of a body
+    do not measure x, its drift and the slips of its joints are NaN. Motions that nobody measured count as none in the
+    others, which errs by the products of small motions. With markers on a line a yaw of the table shows as a slip, and
+    nothing distinguishes the two.
     """
     poses = body_poses(test, structure, sensors.marker_noise)
     driven = driven_body(structure, poses)
     # joint_coordinates counts from its first time: give it the mean pose of the structure file
     position = np.concatenate([structure.position[None], poses.position])
     rotation = np.concatenate([rotation_matrices(structure.orientation)[None], poses.rotation])
-    histories = joint_coordinates(structure, position, rotation).isel(time=slice(1, None))
-    seen = np.einsum("tij,tbi->tbj", rotation[:, driven], position - position[:, driven, None])
-    histories["body_displacement"] = ("time", "body", "axis"), seen[1:] - seen[:1], {"units": "m"}
-    whole = np.array([known == POSE for known in poses.known])
-    pairs = find_joints(structure)[0]
-    # what a planar pose takes as none is not known
-    planar = ~whole[pairs].all(axis=1)
-    histories["rotation"][:, planar, [0, 2]] = np.nan
-    of_joints = poses.axes_read[pairs].all(axis=1)
-    for name, known in (
-        ("slip", of_joints[:, :2]),
-        ("opening", of_joints[:, 2]),
-        ("body_displacement", poses.axes_read & poses.axes_read[driven]),
-    ):
-        histories[name][:] = np.where(known, histories[name], np.nan)
-    return histories.assign(_noise(structure, poses, driven)).assign_coords(
-        time=("time", test["time"].to_numpy(), {"units": "s"}),
-        body=structure.body_names,
-        known=("body", poses.known),
-    )
+    joints = joint_coordinates(structure, position, rotation).isel(time=slice(1, None))
+    seen = np.einsum("tij,tbi->tbj", rotation[:, driven], position - position[:, driven, None])[..., 0]
+    along = poses.axes_read[:, 0]
+    slips = xr.DataArray(along[find_joints(structure)[0]].all(axis=1), dims="joint")
+    drift = np.where(along & along[driven], seen[1:] - seen[:1], np.nan)
+    return xr.Dataset(
+        {
+            "slip": joints["slip"].sel(tangent="x", drop=True).where(slips),
+            "rotation": joints["rotation"].sel(axis="y", drop=True),
+            "drift": (("time", "body"), drift, {"units": "m"}),
+            **_noise(structure, poses, driven),
+        },
+        {"time": ("time", test["time"].to_numpy(), {"units": "s"}), "body": structure.body_names},
+    ).drop_vars(["lower", "upper"])
 
 
 def _noise(structure, poses, driven):
@@ -80,10 +74,9 @@ def _noise(structure, poses, driven):
         [relative(driven, body, centroid) for body, centroid in enumerate(structure.position)]
     )
     return {
-        "slip_noise": (("joint", "tangent"), of_joints[:, :2]),
-        "opening_noise": ("joint", of_joints[:, 2]),
-        "rotation_noise": (("joint", "axis"), of_joints[:, 3:]),
-        "body_displacement_noise": (("body", "axis"), of_bodies[:, :3]),
+        "slip_noise": ("joint", of_joints[:, 0]),
+        "rotation_noise": ("joint", of_joints[:, 4]),
+        "drift_noise": ("body", of_bodies[:, 0]),
     }
 
 

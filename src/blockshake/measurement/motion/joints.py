@@ -81,7 +81,7 @@ def joint_coordinates(structure, position, rotation):
     turned = np.einsum("tjki,tjkl->tjil", rotation[:, lower], rotation[:, upper])
     turned = np.einsum("tjik,jlk->tjil", turned, turned[0])
     names = structure.body_names
-    values = {"slip": moved[..., :2], "opening": moved[..., 2], "rotation": _rotation_vectors(turned)}
+    values = {"slip": moved[..., :2], "opening": moved[..., 2], "rotation": rotation_vectors(turned)}
     return xr.Dataset(
         {
             name: (dims.split(), values[name], {"long_name": long_name, "units": unit})
@@ -97,7 +97,7 @@ def joint_coordinates(structure, position, rotation):
     )
 
 
-def _rotation_vectors(matrices):
+def rotation_vectors(matrices):
     """Rotation vectors of matrices, (..., 3); NaN where a matrix is."""
     vectors = np.full(matrices.shape[:-1], np.nan)
     known = np.isfinite(matrices).all(axis=(-2, -1))

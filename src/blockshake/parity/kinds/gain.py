@@ -32,11 +32,7 @@ OF_TRANSDUCER = Column(GAIN, 1, 1e-2, lambda held: held.expected[:, None], visib
 def channel_gains(pairs_by_test, lags):
     """Gain of every channel, reading over truth less 1, over all tests: dict of str to Size.
 
-    Parameters
-    ----------
-    pairs_by_test : dict of str to list of ChannelPair
-    lags : dict of str to float
-        Of the optical clock, by test [s].
+    By test: a list of `ChannelPair`, and the lag of the optical clock [s].
 
     Notes
     -----

@@ -140,7 +140,7 @@ class Answer:
 
 
 def answer_questions(questions, seed):
-    """Answers of groups of tests on parameters, the level of what is told kept over all questions together.
+    """`Answer` of tests on parameters by question, the level of what is told kept over all questions together.
 
     Parameters
     ----------
@@ -149,10 +149,6 @@ def answer_questions(questions, seed):
         The samples are the same in all.
     seed : int
         Of the shuffles.
-
-    Returns
-    -------
-    dict of hashable to Answer
 
     Notes
     -----

@@ -9,7 +9,7 @@ from blockshake.statistics.intervals import sample_quantiles
 from blockshake.statistics.resampling import rank_chance
 from blockshake.statistics.scores import FEWEST
 from blockshake.study.ensembles.case_input import measured_on_clock
-from blockshake.study.ensembles.ensemble import ALONG_X, POSES, describe, join_batches, relative_to_slab
+from blockshake.study.ensembles.ensemble import ALONG_X, POSES, describe, join_batches
 from blockshake.study.ensembles.envelope import counted_samples
 
 REFERENCE_QUANTILES = (0.05, 0.5, 0.95)
@@ -18,15 +18,11 @@ UNLIKELY = 0.05  # chance of a whole curve at or below which an ensemble does no
 _DESCRIBED = {
     "coverage": ("fraction of the time that the measured curve is within the bounds", "1"),
     "reference": ("the same of the members, each in the bounds of the others", "1"),
-    "member_coverage": ("fraction of the time that a member is within the bounds of the others", "1"),
     "distance": (
         "root mean square distance from the members, in standard deviations of noise and spread",
         "1",
     ),
-    "member_distance": ("the same of a member from the others", "1"),
     "curve_probability": ("chance of a distance as large if the measured curve were one of the members", "1"),
-    "band_width": ("upper minus lower bound, mean over time", "m"),
-    "measured_peak": ("largest absolute measured displacement along x relative to the slab", "m"),
     "quantile": ("probability of a smaller value", "1"),
 }
 
@@ -57,12 +53,10 @@ def coverage(measured, ensemble, marker_noise):
     -------
     xarray.Dataset
         Along the markers that both have, displacement along x, inertial frame: ``coverage(marker)`` of the measured
-        curve in the bounds of all members; ``member_coverage(sample, marker)`` of each member, read with the same
-        noise, in the bounds of the others; its ``reference(quantile, marker)``; ``distance(marker)`` of the measured
-        curve and ``member_distance(sample, marker)``, from `distances`; ``curve_probability(marker)``, the rank of the
-        measured curve's distance among the members', from 1 / (n + 1) to 1; ``band_width(marker)`` [m], mean
-        over time; and ``measured_peak(marker)`` [m], largest absolute displacement relative to the slab's marker, to
-        hold the width against. All but the peak are NaN for fewer than three members: too few for a reference.
+        curve in the bounds of all members; ``reference(quantile, marker)`` of each member, read with the same noise, in
+        the bounds of the others; ``distance(marker)`` of the measured curve, from `distances`; and
+        ``curve_probability(marker)``, the rank of that distance among the members', from 1 / (n + 1) to 1. All are
+        NaN for fewer than three members: too few for a reference.
 
     Raises
     ------
@@ -80,7 +74,7 @@ def coverage(measured, ensemble, marker_noise):
     """
     read, members, curves, readings = compared_curves(measured, ensemble, marker_noise, _NOISE_SEED)
     markers = list(read["marker"].values)
-    inside = width = probability = np.full(len(markers), np.nan)
+    inside = probability = np.full(len(markers), np.nan)
     member_coverage = np.full((len(curves), len(markers)), np.nan)
     away = np.full((len(curves) + 1, len(markers)), np.nan)  # of the members, and of the measured curve
     if len(curves) >= FEWEST:
@@ -89,20 +83,14 @@ def coverage(measured, ensemble, marker_noise):
         member_coverage = members_inside(curves, readings)
         away = distances(np.concatenate([readings, read.to_numpy()[None]]), curves, marker_noise)
         probability = rank_chance(away[-1], away[:-1])
-        width = np.nanmean(upper - lower, axis=0)
-    by_member = ("sample", "marker")
     result = xr.Dataset(
         {
             "coverage": ("marker", inside),
             "reference": (("quantile", "marker"), sample_quantiles(member_coverage, REFERENCE_QUANTILES)),
-            "member_coverage": (by_member, member_coverage),
             "distance": ("marker", away[-1]),
-            "member_distance": (by_member, away[:-1]),
             "curve_probability": ("marker", probability),
-            "band_width": ("marker", width),
-            "measured_peak": ("marker", _measured_peak(measured, members.attrs["slab_marker"], markers)),
         },
-        coords={"quantile": list(REFERENCE_QUANTILES), "marker": markers, "sample": members["sample"]},
+        coords={"quantile": list(REFERENCE_QUANTILES), "marker": markers},
     )
     describe(result, _DESCRIBED)
     result.attrs = {
@@ -111,7 +99,6 @@ def coverage(measured, ensemble, marker_noise):
         "synthetic": int(measured.attrs.get("synthetic", 0)),
         "counted": members.sizes["sample"],
         "marker_noise": float(marker_noise),
-        "noise_seed": _NOISE_SEED,
     }
     return result
 
@@ -220,12 +207,3 @@ def members_inside(curves, readings):
         upper = np.where(curve == falling[0], falling[1], falling[0])
         inside.append(share_inside(reading, lower, upper))
     return np.array(inside)
-
-
-def _measured_peak(measured, slab_marker, markers):
-    displacement = measured["marker_displacement"].sel(axis="x", drop=True)
-    slab_marker = measured.attrs.get("slab_marker", slab_marker)
-    if slab_marker not in displacement["marker"].values:
-        return np.full(len(markers), np.nan)
-    relative = relative_to_slab(displacement, slab_marker).sel(marker=markers)
-    return np.abs(relative).max("time").to_numpy()

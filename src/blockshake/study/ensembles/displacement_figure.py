@@ -9,9 +9,8 @@ from matplotlib.patches import Patch
 from blockshake.pages.drawing import BLACK, GREY, LIGHT_GREY, MEASURED, RED, column_title, new_figure
 from blockshake.pages.wording import model_label
 
-_MOST_POINTS = (
-    500  # of a curve; in print a fifth of a point apart or more, and finer ones only make files large
-)
+# of a curve; in print a fifth of a point apart or more, and finer ones only make files large
+_MOST_POINTS = 500
 _ROW, _HEAD = 150, 110  # pixels of a row on a screen, and of titles and axis
 _LOOKS = {
     "smallest to largest": {"fill": "tonexty", "fillcolor": LIGHT_GREY, "line": {"width": 1, "color": RED}},

@@ -36,7 +36,7 @@ class Timing(NamedTuple):
 
 
 def read_timings(logs, samples):
-    """Costs of all cases and models.
+    """Costs of all cases and models, a tuple of `Timing`.
 
     Parameters
     ----------
@@ -44,10 +44,6 @@ def read_timings(logs, samples):
         Folder with ``simulate_batch/MODEL/CASE/FIRST-LAST.log``.
     samples : dict of (str, str) to xarray.Dataset
         By model and case, with ``end_time(sample)`` [s].
-
-    Returns
-    -------
-    tuple of Timing
     """
     timings = []
     for (model, case), figures in samples.items():

@@ -21,9 +21,8 @@ from blockshake.study.fragility.fragility import ESTIMATES, POINTS
 _DRAWN = 2000  # of the parameters of a regression
 _STILL = 1e-4  # m, the noise of a marker: a sample that moves less tells nothing of a line
 _STEPS = 60  # of a bisection, and of Newton's method
-_FAR = (
-    20.0  # in the logarithm of the intensity, from the middle of the samples to where no level is looked for
-)
+# in the logarithm of the intensity, from the middle of the samples to where no level is looked for
+_FAR = 20.0
 _DESCRIBED = {
     "intensity": "measure of the motion of the sample",
     "fine_intensity": "measure of the motion",

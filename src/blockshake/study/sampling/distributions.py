@@ -24,9 +24,30 @@ _WORD = r"[^\s./]+"
 _NAME = re.compile(
     rf"friction\.({_WORD})\.({_WORD})|materials\.{_WORD}\.(?:{'|'.join(_PROPERTIES)})|shapes\.{_WORD}\.hollow"
 )
+_FINE = 64  # points of a stratum whose mean is taken
 
 
-class Lognormal(Strict):
+class _ByQuantiles(Strict):
+    """A variable whose ``quantile(probability)`` is known."""
+
+    @property
+    def median(self):
+        """Value with half the probability below it."""
+        return float(self.quantile(0.5))
+
+    def stratum_medians(self, size):
+        """Medians of ``size`` strata of equal probability, rising, shape (size,)."""
+        return self.quantile((np.arange(size) + 0.5) / size)
+
+    def stratum_means(self, size):
+        """Means of the variable within ``size`` strata of equal probability, rising, shape (size,)."""
+        return self._points(size).mean(axis=1)
+
+    def _points(self, size):
+        return self.quantile((np.arange(size * _FINE) + 0.5) / (size * _FINE)).reshape(size, _FINE)
+
+
+class Lognormal(_ByQuantiles):
     """A positive variable whose logarithm is normal, given by its mean and coefficient of variation.
 
     The two parameters of the logarithm follow exactly: variance ``ln(1 + cov^2)`` and mean ``ln(mean) - variance / 2``.
@@ -57,10 +78,6 @@ class Lognormal(Strict):
         score = np.log(np.asarray(value) / self.median) / self.log_deviation
         return np.exp(-0.5 * score**2) / (np.sqrt(2.0 * np.pi) * self.log_deviation * np.asarray(value))
 
-    def stratum_medians(self, size):
-        """Medians of ``size`` strata of equal probability, rising, shape (size,)."""
-        return self.quantile((np.arange(size) + 0.5) / size)
-
     def stratum_means(self, size):
         """Means of the variable within ``size`` strata of equal probability, rising, shape (size,).
 
@@ -71,29 +88,6 @@ class Lognormal(Strict):
         """
         edges = ndtri(np.arange(size + 1) / size)
         return size * self.mean * np.diff(ndtr(edges - self.log_deviation))
-
-
-_FINE = 64  # points of a stratum whose mean is taken
-
-
-class _ByQuantiles(Strict):
-    """A variable whose ``quantile(probability)`` is known."""
-
-    @property
-    def median(self):
-        """Value with half the probability below it."""
-        return float(self.quantile(0.5))
-
-    def stratum_medians(self, size):
-        """Medians of ``size`` strata of equal probability, rising, shape (size,)."""
-        return self.quantile((np.arange(size) + 0.5) / size)
-
-    def stratum_means(self, size):
-        """Means of the variable within ``size`` strata of equal probability, rising, shape (size,)."""
-        return self._points(size).mean(axis=1)
-
-    def _points(self, size):
-        return self.quantile((np.arange(size * _FINE) + 0.5) / (size * _FINE)).reshape(size, _FINE)
 
 
 class Tabulated(_ByQuantiles):

@@ -176,7 +176,7 @@ def _check_options(size, seed, stratum, kind, effort):
 
 
 def complete_correlation(correlation, names):
-    """Target correlation of all variables: what is given, and zero for the rest.
+    """Target correlation of all variables, square: what is given, and zero for the rest.
 
     Parameters
     ----------
@@ -184,10 +184,6 @@ def complete_correlation(correlation, names):
         Square, names as index and columns; or its file.
     names : list of str
         All variables, in order.
-
-    Returns
-    -------
-    float64 array, shape (n_variables, n_variables)
 
     Raises
     ------

@@ -1,12 +1,16 @@
 """Section on the contact stiffness: waves, their speed, and the stiffness of every sample."""
 
+import numpy as np
+
 from blockshake.pages.blocks import Figure, Section, Table, Text
-from blockshake.pages.drawing import svg_of
-from blockshake.pages.units import printed, quantity
+from blockshake.pages.drawing import BLACK, BLUE, GREEN, GREY, ORANGE, RED, new_figure, svg_of
+from blockshake.pages.units import MICROMETRES, printed, quantity
 from blockshake.pages.wording import given, number, parameter_label
 from blockshake.study.sampling.distributions import parameter_unit
-from blockshake.study.stiffness.figure import plot_waves
 from blockshake.study.stiffness.wave_speed import speed_deviation
+
+_LINES = (BLUE, GREEN, ORANGE, RED, BLACK, GREY)
+_STEP = {"normal": "vertical step: normal stiffness", "shear": "horizontal step: shear stiffness"}
 
 
 def stiffness(content):
@@ -62,3 +66,23 @@ def _stiffness_of_samples(stiffness, of):
         low, mean, high = (number(factor * value) for value in (column.min(), column.mean(), column.max()))
         values.append(f"{parameter_label(name)} {low} to {high} {unit}, mean {mean}")
     return Text(f"Stiffness per area of the {len(stiffness)} samples{of}: {'; '.join(values)}.")
+
+
+def plot_waves(waves):
+    """Displacement of a tower's blocks after a step of velocity, with the arrivals; the paper's Fig. 9."""
+    figure = new_figure(0.075)
+    panels = figure.subplots(1, waves.sizes["direction"], squeeze=False)[0]
+    for axes, direction in zip(panels, waves["direction"].values, strict=True):
+        test = waves.sel(direction=direction).dropna("time", how="all", subset=["displacement"])
+        for block, color in zip(waves["block"].values, _LINES, strict=False):
+            one = test.sel(block=block)
+            history, arrival = MICROMETRES.factor * one["displacement"], float(one["arrival"])
+            axes.plot(1e3 * one["time"], history, color=color, label=str(block))
+            axes.plot(
+                1e3 * arrival, np.interp(arrival, one["time"], history), "o", color=color, markersize=3.5
+            )
+        axes.set(title=_STEP[str(direction)], xlabel="time [ms]", xlim=(0.0, 1e3 * float(test["time"][-1])))
+    panels[0].set_ylabel(f"displacement [{MICROMETRES.name}]")
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=len(handles))
+    return figure

@@ -54,14 +54,7 @@ class WaveTest(NamedTuple):
 def target_wave_speeds(structure):
     """Speeds of pressure and shear waves in the tower's material, Zhou et al. (2023), Eqs. (7), (8) [m/s].
 
-    Parameters
-    ----------
-    structure : Structure
-
-    Returns
-    -------
-    dict of str to float
-        ``normal``: sqrt(E / rho); ``shear``: sqrt(G / rho) with G = E / (2 (1 + nu)).
+    ``normal``: sqrt(E / rho); ``shear``: sqrt(G / rho) with G = E / (2 (1 + nu)).
     """
     block = structure.file.bodies[tower_blocks(structure)[0]]
     material = structure.file.materials[block.material]
@@ -73,7 +66,7 @@ def target_wave_speeds(structure):
 
 
 def measure_wave_speed(structure, parameters, direction):
-    """Send one step of velocity up a tower with LS-DEM and read the effective wave speed.
+    """`WaveTest`: send one step of velocity up a tower with LS-DEM and read the effective wave speed.
 
     Parameters
     ----------
@@ -82,10 +75,6 @@ def measure_wave_speed(structure, parameters, direction):
     parameters : LsDemParameters
     direction : str
         ``normal`` (vertical step) or ``shear`` (horizontal step, rotations blocked).
-
-    Returns
-    -------
-    WaveTest
 
     Raises
     ------
