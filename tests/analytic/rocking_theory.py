@@ -1,6 +1,7 @@
 """Rigid rocking after Housner (1963): geometry of a block, its equation between impacts, a release pose."""
 
 import numpy as np
+from both_solvers import leans
 from scipy.integrate import solve_ivp
 
 G = 9.81
@@ -62,11 +63,6 @@ class Rocker:
         weight = self.mass * G * (x[after : here + 1] + self.pivot)
         lost = np.trapezoid(weight, run.time[after : here + 1]) + weight[0] * (run.time[after] - upright)
         return (about[here] - lost) / (-self.inertia * self.speed(0.0, angle[0]))
-
-
-def leans(run):
-    """Lean of the first free body about y [rad]."""
-    return 2.0 * np.arctan2(run.orientation[:, 1, 2], run.orientation[:, 1, 0])
 
 
 def rock(rocker, acceleration, duration, ratio):

@@ -72,36 +72,6 @@ def test_every_simulating_rule_leaves_a_log_with_its_cost(finished):
         assert read_cost(log).cpu_time > 0.0
 
 
-@pytest.mark.parametrize(
-    ("source", "simulated"),
-    [("solvers/nscd/driver.py", "nscd-rigid"), ("solvers/ls_dem/driver.py", "ls-dem")],
-)
-def test_edit_of_a_solver_reruns_that_solver_only(finished, source, simulated):
-    path = finished.folder / "src" / "blockshake" / source
-    before = path.read_text()
-    try:
-        finished.append(source, "\n\n# a comment changes nothing\n")
-        assert finished.jobs() == {}
-        finished.append(source, "\nANSWER = 42\n")
-        answer = finished.snakemake("-n", "--summary")
-        due = [line.split("\t") for line in answer.stdout.splitlines() if line.endswith("update pending")]
-        runs = {line[0].split("/")[3] for line in due if line[0].startswith("results/small/runs/")}
-        assert runs == {simulated}
-    finally:
-        path.write_text(before)
-
-
-def test_edit_of_the_report_simulates_nothing(finished):
-    source = "study/report/report.py"
-    path = finished.folder / "src" / "blockshake" / source
-    before = path.read_text()
-    try:
-        finished.append(source, "\nANSWER = 42\n")
-        assert set(finished.jobs()) == {"make_report", "all", "total"}
-    finally:
-        path.write_text(before)
-
-
 def test_report_of_one_case_needs_its_results_alone(finished):
     answer = finished.snakemake("reports/small-configuration-1.html")
     assert answer.returncode == 0, answer.stderr
@@ -191,14 +161,6 @@ def test_shipped_studies_plan_without_error(study):
     )  # fmt: skip
     assert answer.returncode == 0, answer.stderr
     assert "simulate_batch" in answer.stdout
-
-
-def test_workflow_is_free_of_lint():
-    answer = subprocess.run(
-        [SNAKEMAKE, "--lint"],
-        cwd=ROOT, capture_output=True, text=True, timeout=LIMIT, check=False,
-    )  # fmt: skip
-    assert answer.returncode == 0, answer.stdout + answer.stderr
 
 
 @pytest.mark.slow
