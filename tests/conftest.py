@@ -52,7 +52,7 @@ def pytest_collection_modifyitems(items):
 
 @pytest.fixture(scope="session")
 def make_mapping():
-    """Mapping of a structure file: bodies of one stone on a driven slab whose top is at z = 0; friction may be a law."""
+    """Mapping of a structure file: bodies of a stone on a driven slab whose top is at z = 0; friction may be laws."""
 
     def make(bodies, *, friction=0.5, slab=True, shapes=None, **keys):
         mapping = {

@@ -73,7 +73,7 @@ def test_a_thrown_brick_tumbles_by_the_elliptic_solution_to_second_order(solver,
         momentum = turn.apply(in_body * inertia)
         momentum_errors.append(np.abs(momentum - momentum[0]).max() / np.abs(momentum[0]).max())
         energy_errors.append(np.abs(run.energy[:, 0] / run.energy[0, 0] - 1.0).max())
-    # a phase wrong by no more than (|w| dt)^2 of the 18 rad turned, times the polhode's 0.4 rad/s; the order is the test
+    # a phase wrong by no more than (|w| dt)^2 of the 18 rad turned, times the polhode's 0.4 rad/s; the order is tested
     assert errors[-1] < (9.0 * STEPS[solver][-1]) ** 2 * 18.0 * 0.4
     for found in (errors, energy_errors) if solver == "ls-dem" else (errors,):
         np.testing.assert_allclose(np.log2(np.divide(found[:-1], found[1:])), 2.0, atol=0.1)

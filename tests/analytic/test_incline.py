@@ -57,9 +57,9 @@ def test_half_a_percent_below_the_limit_nothing_creeps(solver, n, duration, make
 def test_half_a_percent_above_it_slides_as_coulomb_says(solver, duration, make_structure):
     """Acceleration g (sin - mu cos), 0.022 m/s2: as exactly at the end as at the start.
 
-    In the long run LS-DEM's slab has nodes at its ends and its middle alone, so that none comes under the sliding block: one that
-    enters through the leading edge is pushed against the sliding for an instant, and what is tested here is
-    Coulomb's law.
+    In the long run LS-DEM's slab has nodes at its ends and its middle alone, so that none comes under the sliding
+    block: one that enters through the leading edge is pushed against the sliding for an instant, and what is tested
+    here is Coulomb's law.
     """
     slope = 1.005 * MU
     _, acceleration = incline(make_structure, slope)

@@ -67,7 +67,8 @@ def _set(mapping, path, value):
     [
         (("colour",), "red", "colour: unknown key"),
         (("bodies", 1, "colour"), 1, "bodies.lower.colour: unknown key"),
-        (("bodies", 1), {"name": "lower", "material": "stone", "position": [0, 0, 1]}, "bodies.lower.shape: missing key"),
+        (("bodies", 1), {"name": "lower", "material": "stone", "position": [0, 0, 1]},
+         "bodies.lower.shape: missing key"),
         (("bodies", 2, "position"), [0.0, 0.0, 2.395],
          "bodies.upper.position: overlaps lower by 5 mm; expected at most 1 mm"),
         (("shapes", "block", "mesh"), "a.stl",
@@ -135,9 +136,9 @@ def test_a_wall_of_two_thousand_blocks_loads_in_seconds(make_mapping):
         for column in range(columns)
     ]
     mapping = make_mapping(blocks, shapes={"slab": {"box": [3.0, 300.0, 0.2]}})
-    start = time.perf_counter()
+    start = time.process_time()
     structure = build_structure(mapping, "s.yaml", ".")
-    assert time.perf_counter() - start < 3.0
+    assert time.process_time() - start < 3.0
     in_rows, between_rows = rows * (columns - 1), (rows - 1) * (2 * columns - 1)
     assert structure.touching.sum() == 2 * (columns + in_rows + between_rows)
 

@@ -34,7 +34,9 @@ def run():
     def run(solver, **keys):
         changes, columns, duration, parameters, _ = CUT[solver]
         motion = ground_motion("sine", TIME, columns, "acceleration")
-        return solve(solver, load_structure("configuration-1", changes), duration, motion, **parameters | keys)
+        return solve(
+            solver, load_structure("configuration-1", changes), duration, motion, **parameters | keys
+        )
 
     return run
 
@@ -94,7 +96,11 @@ def test_a_checkpoint_that_cannot_be_read_starts_anew(content, run, whole, tmp_p
 def cubes(count, spacing, rise):
     """A row of cubes that fall one after the other, each from a gap of ``rise`` more than the one before [m]."""
     return [
-        {"name": f"c{i}", "shape": "cube", "position": [spacing * (i - 0.5 * count), 0.0, 0.5 + rise * (i + 1)]}
+        {
+            "name": f"c{i}",
+            "shape": "cube",
+            "position": [spacing * (i - 0.5 * count), 0.0, 0.5 + rise * (i + 1)],
+        }
         for i in range(count)
     ]
 

@@ -111,7 +111,9 @@ def test_a_joint_may_be_weak(solver, law_of):
 
 def test_two_free_blocks_know_the_file_order_and_not_their_height(law_of):
     """The upper block is the file's first: the sign is that of the lower one's slip along the upper one's x."""
-    high, low = ({**THROWN, "name": name, "position": [0.0, 0.0, z]} for name, z in (("high", 0.75), ("low", 0.25)))
+    high, low = (
+        {**THROWN, "name": name, "position": [0.0, 0.0, z]} for name, z in (("high", 0.75), ("low", 0.25))
+    )
     stone = {"density": 2400.0, "youngs_modulus": 3.45e10, "poisson_ratio": 0.2}
     laws = [
         {"pair": ["stone", "stone"], "coefficient": MU, "asymmetry": 0.3},

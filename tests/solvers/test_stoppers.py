@@ -9,7 +9,11 @@ from blockshake.dynamics.motion import ground_motion
 G = 9.81
 CUBE = {"name": "b", "shape": "small", "position": [0.0, 0.0, 0.25]}
 SQUAT = {"name": "b", "shape": "squat", "position": [0.0, 0.0, 0.25]}
-SHAPES = {"small": {"box": [0.5, 0.5, 0.5]}, "squat": {"box": [1.0, 1.0, 0.5]}, "slab": {"box": [12.0, 8.0, 0.2]}}
+SHAPES = {
+    "small": {"box": [0.5, 0.5, 0.5]},
+    "squat": {"box": [1.0, 1.0, 0.5]},
+    "slab": {"box": [12.0, 8.0, 0.2]},
+}
 MASS = 0.5 * 2400.0  # kg, of the squat block
 
 

@@ -4,7 +4,7 @@ import sys
 
 import numpy as np
 import pytest
-from both_solvers import TIME_STEP, both, solve
+from both_solvers import both, solve
 
 from blockshake.dynamics.motion import ground_motion
 from blockshake.dynamics.system import State
@@ -42,8 +42,9 @@ def test_one_cycle_of_1_g_overturns_the_tower(solver):
     assert run.status == "collapsed"
     assert run.reason.startswith("block-")
     first = _nan_after(run)
-    # it was seen at the last record, which stands
-    assert run.time[first - 1] == pytest.approx(run.end_time, abs=TIME_STEP[solver])
+    # LS-DEM sees it at the last record, which stands, and NSCD at a step between two records
+    seen = run.end_time - run.time[first - 1]
+    assert abs(seen) < 5e-5 if solver == "ls-dem" else 0.0 <= seen < 5e-3
     assert 0.3 < run.end_time < 3.0
 
 
