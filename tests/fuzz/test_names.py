@@ -162,12 +162,9 @@ def test_a_study_in_an_odd_folder_reaches_no_shell(odd, tmp_path):
         "--configfile",
         str(tmp_path / "study.yaml"),
     ]
-    answer = subprocess.run([*command, "-n"], capture_output=True, text=True, check=False)
-    assert answer.returncode == 0, answer.stdout + answer.stderr
-    answer = subprocess.run(
-        [*command, "--", "results/small/motions/m.nc"], capture_output=True, text=True, check=False
-    )
-    assert answer.returncode == 0, answer.stdout + answer.stderr
+    for more in (["-n"], ["--", "results/small/motions/m.nc"]):
+        answer = subprocess.run([*command, *more], capture_output=True, text=True, check=False)
+        assert answer.returncode == 0, answer.stdout + answer.stderr
     assert (tmp_path / "work" / "results" / "small" / "motions" / "m.nc").exists()
     assert not list(tmp_path.rglob("pwned"))
 
