@@ -30,6 +30,19 @@ class Rocker:
         """Angular speed at lean ``angle`` of a block let go at ``released`` [rad/s]; energy."""
         return np.sqrt(2.0 * self.p2 * (np.cos(self.alpha - released) - np.cos(self.alpha - angle)))
 
+    def quarter(self, angle):
+        """Time from rest at a lean to upright [s]: ``theta'' = -p^2 sin(alpha - theta)``, by integration."""
+
+        def upright(_, y):
+            return y[0]
+
+        upright.terminal = True
+        run = solve_ivp(
+            lambda _, y: [y[1], -self.p2 * np.sin(self.alpha - y[0])], (0.0, 10.0), [angle, 0.0], events=upright,
+            rtol=1e-11, atol=1e-13,
+        )  # fmt: skip
+        return run.t[-1]
+
     def ratio(self, resultant):
         """Ratio of angular velocities when the impulse acts at ``resultant`` times the pivot's distance.
 

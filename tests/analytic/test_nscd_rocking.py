@@ -4,25 +4,10 @@ import numpy as np
 import pytest
 from both_solvers import leans
 from rocking_theory import G, H, Rocker
-from scipy.integrate import solve_ivp
 
 STEP = 2e-4  # s
 ROCKER = Rocker(0.0)
 KINETIC, POTENTIAL, ELASTIC, FRICTION, CONTACT, VISCOUS, INPUT = range(7)
-
-
-def _quarter(angle):
-    """Time from rest at a lean to upright [s]: ``theta'' = -p^2 sin(alpha - theta)``, by integration."""
-
-    def upright(_, y):
-        return y[0]
-
-    upright.terminal = True
-    run = solve_ivp(
-        lambda _, y: [y[1], -ROCKER.p2 * np.sin(ROCKER.alpha - y[0])], (0.0, 10.0), [angle, 0.0], events=upright,
-        rtol=1e-11, atol=1e-13,
-    )  # fmt: skip
-    return run.t[-1]
 
 
 def _next_angle(angle):
@@ -42,13 +27,15 @@ def test_periods_and_amplitudes_are_housners(rocking):
     _, run = rocking
     lean = leans(run)
     impacts = np.flatnonzero(lean[:-1] * lean[1:] < 0.0)
-    angle, upright = 0.6 * ROCKER.alpha, _quarter(0.6 * ROCKER.alpha)
+    angle, upright = 0.6 * ROCKER.alpha, ROCKER.quarter(0.6 * ROCKER.alpha)
     assert run.time[impacts[0]] == pytest.approx(upright, rel=0.01)
     for index in range(4):
         peak = np.abs(lean[impacts[index] : impacts[index + 1]]).max()
         assert peak == pytest.approx(_next_angle(angle), rel=0.01)
         angle = peak
-        assert np.diff(run.time[impacts[index : index + 2]]) == pytest.approx(2.0 * _quarter(angle), rel=0.01)
+        assert np.diff(run.time[impacts[index : index + 2]]) == pytest.approx(
+            2.0 * ROCKER.quarter(angle), rel=0.01
+        )
 
 
 def test_angular_velocities_at_impacts_have_housners_ratio(rocking):

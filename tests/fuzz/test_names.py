@@ -43,16 +43,8 @@ from blockshake.study.config import check_config
 ROOT = PACKAGE.parents[1]
 SCRIPT = "<script>alert(1)</script>"
 NAMES = (
-    SCRIPT,
-    '"><img src=x onerror=alert(1)>',
-    "{{ 7*7 }}",
-    "$\\frac$",
-    "#eval(1)",
-    "--><b>",
-    "it's",
-    "&amp;",
-    "]]>",
-)
+    SCRIPT, '"><img src=x onerror=alert(1)>', "{{ 7*7 }}", "$\\frac$", "#eval(1)", "--><b>", "it's", "&amp;", "]]>",
+)  # fmt: skip
 
 
 def _plot(name):

@@ -1,20 +1,16 @@
+"""One block that rocks on LS-DEM's springs: its onset, its quarter period, and that it stays in its plane."""
+
 import numpy as np
 import pytest
 from both_solvers import leans
-from scipy.integrate import solve_ivp
+from rocking_theory import HALF_WIDTH, G, H, Rocker
 from scipy.optimize import fsolve
 
 from blockshake.dynamics.motion import ground_motion
 from blockshake.geometry.surface_nodes import line_nodes
 
-G = 9.81
-B, H = 0.4, 0.8  # m, half width and half height of the sharp block
-INSET = 0.003 * 2.0 * B  # m; the outermost nodes, and so the pivot, lie this far inside the edge
-PIVOT = B - INSET
-MASS = 0.8 * 2.4 * 1.6 * 2400.0
-INERTIA = MASS * ((2 * B) ** 2 + (2 * H) ** 2) / 12.0 + MASS * (PIVOT**2 + H**2)  # about the pivot
-ALPHA = np.arctan(PIVOT / H)
-RADIUS = np.hypot(PIVOT, H)
+INSET = 0.003 * 2.0 * HALF_WIDTH  # m; the outermost nodes, and so the pivot, lie this far inside the edge
+ROCKER = Rocker(INSET)
 # Lean of a block whose weight rests on its last row of nodes, rad, from `_static_lean`
 ELASTIC_LEAN = 8.35e-5
 
@@ -25,12 +21,12 @@ def _static_lean(acceleration):
     The rows are the block's own nodes; the resultant lies where the thrust line meets the base, moved by the lean
     itself.
     """
-    x, width = line_nodes(2.0 * B, 0.2, INSET)
+    x, width = line_nodes(2.0 * HALF_WIDTH, 0.2, INSET)
     stiffness = 2.16e10 * 2.4 * width
 
     def out_of_balance(unknowns):
         depth, lean = unknowns * 1e-5
-        force = stiffness * np.maximum(depth + lean * x, 0.0) / (MASS * G)
+        force = stiffness * np.maximum(depth + lean * x, 0.0) / (ROCKER.mass * G)
         return [force.sum() - 1.0, force @ x - H * (acceleration / G + lean)]
 
     return fsolve(out_of_balance, [2.0, 10.0])[1] * 1e-5
@@ -40,7 +36,7 @@ def _static_lean(acceleration):
 def test_rocking_sets_in_at_housners_acceleration(part, rocks, make_structure, run_ls_dem):
     """Housner (1963): a > g b/h, with the pivot at the perimeter nodes; reached gently, without a jerk."""
     time = np.arange(0.0, 1.8001, 0.01)
-    a = part * G * PIVOT / H * 0.5 * (1.0 - np.cos(np.pi * np.minimum(time, 1.0)))
+    a = part * G * ROCKER.pivot / H * 0.5 * (1.0 - np.cos(np.pi * np.minimum(time, 1.0)))
     motion = ground_motion("ramp", time, {"x": a}, "acceleration")
     structure = make_structure([{"name": "b", "shape": "sharp", "position": [0.0, 0.0, H]}], friction=0.9)
     run = run_ls_dem(structure, 1.8, motion=motion, rate=50)
@@ -56,42 +52,23 @@ def test_rocking_sets_in_at_housners_acceleration(part, rocks, make_structure, r
     assert leans(run)[-1] < 0.0
 
 
-def _released(make_structure, angle, **keys):
-    """Block at rest, leaning to +x about the perimeter nodes of that side."""
-    c, s = np.cos(angle), np.sin(angle)
-    body = {
-        "name": "b", "shape": "sharp", "position": [PIVOT - PIVOT * c + H * s, 0.0, PIVOT * s + H * c],
-        "orientation": [np.cos(angle / 2), 0.0, np.sin(angle / 2), 0.0],
-    }  # fmt: skip
-    return make_structure([body], friction=0.9, **keys)
-
-
 @pytest.mark.parametrize("angle", [0.05, 0.15])
 def test_the_quarter_period_of_rocking(angle, make_structure, run_ls_dem):
     """Housner (1963): I0 theta'' = -m g R sin(alpha - theta) from release to the first impact."""
-
-    def upright(_, y):
-        return y[0]
-
-    upright.terminal = True
-    theory = solve_ivp(
-        lambda _, y: [y[1], -MASS * G * RADIUS / INERTIA * np.sin(ALPHA - y[0])],
-        (0.0, 2.0), [angle, 0.0], events=upright, rtol=1e-10, atol=1e-12,
-    )  # fmt: skip
-    quarter, speed = theory.t_events[0][0], -theory.y_events[0][0][1]
-    # Housner's formula, linear in the angles: 3 % of ALPHA^2 / 6 apart from the exact one
-    p = np.sqrt(MASS * G * RADIUS / INERTIA)
-    assert np.arccosh(1.0 / (1.0 - angle / ALPHA)) / p == pytest.approx(quarter, rel=0.03)
-    run = run_ls_dem(_released(make_structure, angle), 0.6, rate=2000)
+    quarter = ROCKER.quarter(angle)
+    # Housner's formula, linear in the angles: 3 % of alpha^2 / 6 apart from the exact one
+    linear = np.arccosh(1.0 / (1.0 - angle / ROCKER.alpha)) / np.sqrt(ROCKER.p2)
+    assert linear == pytest.approx(quarter, rel=0.03)
+    run = run_ls_dem(make_structure([ROCKER.body(angle)], friction=0.9), 0.6, rate=2000)
     lean = leans(run)
     after = np.flatnonzero(lean < 0.0)[0]
     found = np.interp(0.0, [lean[after], lean[after - 1]], [run.time[after], run.time[after - 1]])
     # the pivot gives way by ELASTIC_LEAN, which brings the impact forward or back by that over the speed
-    assert found == pytest.approx(quarter, abs=ELASTIC_LEAN / speed)
+    assert found == pytest.approx(quarter, abs=ELASTIC_LEAN / ROCKER.speed(0.0, angle))
 
 
 def test_the_pivot_holds_and_the_block_neither_slides_nor_turns_away(make_structure, run_ls_dem):
     """Facts.md 3.22: the set-up is symmetric about y, and so is the answer, to rounding."""
-    run = run_ls_dem(_released(make_structure, 0.1), 1.5)
+    run = run_ls_dem(make_structure([ROCKER.body(0.1)], friction=0.9), 1.5)
     assert np.abs(run.position[:, 1, 1]).max() < 1e-9
     assert np.abs(run.orientation[:, 1, [1, 3]]).max() < 1e-9
