@@ -52,7 +52,7 @@ def pytest_collection_modifyitems(items):
 
 @pytest.fixture(scope="session")
 def make_mapping():
-    """Mapping of a structure file: bodies of one stone on a driven slab whose top is at z = 0."""
+    """Mapping of a structure file: bodies of a stone on a driven slab whose top is at z = 0; friction may be laws."""
 
     def make(bodies, *, friction=0.5, slab=True, shapes=None, **keys):
         mapping = {
@@ -60,7 +60,9 @@ def make_mapping():
             "materials": {"stone": {"density": 2400.0, "youngs_modulus": 3.45e10, "poisson_ratio": 0.2}},
             "shapes": {**SHAPES, **(shapes or {})},
             "bodies": [{"material": "stone", **body} for body in ([SLAB] if slab else []) + list(bodies)],
-            "friction": [{"pair": ["stone", "stone"], "coefficient": friction}],
+            "friction": friction
+            if isinstance(friction, list)
+            else [{"pair": ["stone", "stone"], "coefficient": friction}],
             **keys,
         }
         return copy.deepcopy(mapping)
@@ -70,10 +72,10 @@ def make_mapping():
 
 @pytest.fixture(scope="session")
 def make_structure(make_mapping):
-    """Structure of `make_mapping`'s mapping."""
+    """Structure of `make_mapping`'s mapping; meshes are in a folder."""
 
-    def make(bodies, **keys):
-        return build_structure(make_mapping(bodies, **keys), "test.yaml", ".")
+    def make(bodies, *, folder=".", **keys):
+        return build_structure(make_mapping(bodies, **keys), "test.yaml", folder)
 
     return make
 

@@ -137,22 +137,15 @@ def test_a_cache_on_a_full_disk_or_without_permission_keeps_nothing(tmp_path):
 @pytest.mark.parametrize(
     "command",
     [
-        ["check", "configuration-1"],
         ["parameters"],
-        ["convert-motion", "alkion", "--output", "a.csv"],
-        ["sample", "--size", "10", "--output", "d.csv"],
         ["simulate", "--structure", "configuration-1", "--motion", "alkion", "--duration", "0.05",
          "--model", "nscd-rigid", "--output", "r.nc"],
         ["plot", "RUN", "--output", "a.png"],
-        ["animate", "RUN", "--output", "a.gif"],
-        ["export", "RUN", "--output", "a.glb"],
-        ["check", "configuration-1", "--picture", "a.pdf"],
-        ["new", "structure", "own.yaml"],
     ],
     ids=lambda command: command[0],
 )  # fmt: skip
 def test_commands_run_without_a_home(command, tmp_path, leaning_file):
-    """With the kernels that are there, so that nothing is compiled anew."""
+    """With nothing of a cache, with Numba's and with Matplotlib's; the kernels are there, and none is compiled."""
     command = [str(leaning_file) if word == "RUN" else word for word in command]
     done = _python(
         ["-m", "blockshake", *command],

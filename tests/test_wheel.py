@@ -11,17 +11,8 @@ from blockshake.files import PACKAGE
 
 ROOT = PACKAGE.parents[1]
 COPIED = (
-    "Snakefile",
-    "LICENSE",
-    "README.md",
-    "config",
-    "data",
-    "profiles",
-    "pyproject.toml",
-    "setup.py",
-    "src",
-    "workflow",
-)
+    "Snakefile", "LICENSE", "README.md", "config", "data", "profiles", "pyproject.toml", "setup.py", "src", "workflow",
+)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -31,18 +22,8 @@ def installed(tmp_path_factory):
     for name in COPIED:
         copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copyfile
         copy(ROOT / name, checkout / name)
-    command = [
-        "-m",
-        "pip",
-        "install",
-        "--quiet",
-        "--no-deps",
-        "--no-build-isolation",
-        "--target",
-        site,
-        checkout,
-    ]
-    subprocess.run([sys.executable, *command], check=True)
+    command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation"]
+    subprocess.run([*command, "--target", site, checkout], check=True)
     shutil.rmtree(checkout)
     return site
 

@@ -1,6 +1,7 @@
 """Rigid rocking after Housner (1963): geometry of a block, its equation between impacts, a release pose."""
 
 import numpy as np
+from both_solvers import leans
 from scipy.integrate import solve_ivp
 
 G = 9.81
@@ -28,6 +29,19 @@ class Rocker:
     def speed(self, angle, released):
         """Angular speed at lean ``angle`` of a block let go at ``released`` [rad/s]; energy."""
         return np.sqrt(2.0 * self.p2 * (np.cos(self.alpha - released) - np.cos(self.alpha - angle)))
+
+    def quarter(self, angle):
+        """Time from rest at a lean to upright [s]: ``theta'' = -p^2 sin(alpha - theta)``, by integration."""
+
+        def upright(_, y):
+            return y[0]
+
+        upright.terminal = True
+        run = solve_ivp(
+            lambda _, y: [y[1], -self.p2 * np.sin(self.alpha - y[0])], (0.0, 10.0), [angle, 0.0], events=upright,
+            rtol=1e-11, atol=1e-13,
+        )  # fmt: skip
+        return run.t[-1]
 
     def ratio(self, resultant):
         """Ratio of angular velocities when the impulse acts at ``resultant`` times the pivot's distance.
@@ -62,11 +76,6 @@ class Rocker:
         weight = self.mass * G * (x[after : here + 1] + self.pivot)
         lost = np.trapezoid(weight, run.time[after : here + 1]) + weight[0] * (run.time[after] - upright)
         return (about[here] - lost) / (-self.inertia * self.speed(0.0, angle[0]))
-
-
-def leans(run):
-    """Lean of the first free body about y [rad]."""
-    return 2.0 * np.arctan2(run.orientation[:, 1, 2], run.orientation[:, 1, 0])
 
 
 def rock(rocker, acceleration, duration, ratio):

@@ -8,11 +8,8 @@ G = 9.81
 MU = 0.5
 # amplitude [g], frequency [Hz] and phase of the base's acceleration along x and y; whether the block rests at times
 TWO_COMPONENTS = [
-    (
-        (0.9, 3.0, 0.5 * np.pi),
-        (0.7, 3.0, 0.0),
-        False,
-    ),  # an ellipse outside Coulomb's circle: never at rest
+    # an ellipse outside Coulomb's circle: never at rest
+    ((0.9, 3.0, 0.5 * np.pi), (0.7, 3.0, 0.0), False),
     ((0.9, 3.0, 0.0), (0.35, 3.0, 0.5 * np.pi), None),  # an ellipse that dips into it
     ((0.7, 2.0, 0.0), (0.6, 5.0, 0.0), True),  # two frequencies: rests and slides by turns
 ]

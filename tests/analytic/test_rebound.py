@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 from dashpot_theory import rebound, rebound_error
-from oblique_impact import BODIES, momenta
 
 from blockshake.solvers.ls_dem.interfaces import damping_ratio
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
@@ -42,13 +41,3 @@ def test_critical_damping_barely_rebounds(make_structure, run_ls_dem):
     assert expected == pytest.approx(np.exp(-2.0), rel=1e-6)
     found = _fall(make_structure, run_ls_dem, 0.0)
     assert found == pytest.approx(expected, abs=rebound_error(1.0, OMEGA_DT))
-
-
-def test_an_oblique_spinning_impact_conserves_both_momenta(make_structure, run_ls_dem):
-    """Newton's third law at every node: linear and angular momentum about the origin."""
-    structure = make_structure(BODIES, gravity=[0.0, 0.0, 0.0])
-    run = run_ls_dem(structure, 0.4, time_step=5e-5, rate=100)
-    linear, angular = momenta(structure, run)
-    np.testing.assert_allclose(linear - linear[0], 0.0, atol=1e-12)
-    # the moment of a step's force about the origin is exact at full steps
-    np.testing.assert_allclose(angular - angular[0], 0.0, atol=1e-11)

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from rocking_theory import Rocker, leans
+from both_solvers import leans
+from rocking_theory import Rocker
 
 from blockshake.dynamics.motion import ground_motion
 

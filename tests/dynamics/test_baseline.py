@@ -229,11 +229,6 @@ def test_a_corner_lies_below_the_nyquist_frequency_and_above_1_hz_is_remarked(tm
         assert (remark in load_motion(path, baseline=corner).attributes["baseline"]) == (corner > 1.0)
 
 
-def test_text_of_an_option_is_a_number():
-    assert checked_baseline("0.05") == 0.05
-    assert checked_baseline("auto") == "auto"
-
-
 @pytest.mark.parametrize(
     "text",
     [

@@ -1,7 +1,6 @@
 """The two works that faults are done to: a small study, and a quick diagnosis of a small campaign."""
 
 import os
-import signal
 import subprocess
 import time
 
@@ -9,7 +8,7 @@ import psutil
 import pytest
 import xarray as xr
 import yaml
-from checkout import Checkout
+from checkout import Checkout, heed_interrupts
 
 from blockshake.files import load_yaml
 
@@ -44,7 +43,7 @@ def start(checkout, work, *options):
     """Start a work in a process group of its own."""
     return subprocess.Popen(
         checkout.command(*WORKS[work], *options), cwd=checkout.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-        text=True, start_new_session=True, preexec_fn=_heed_interrupts,
+        text=True, start_new_session=True, preexec_fn=heed_interrupts,
     )  # fmt: skip
 
 
@@ -58,11 +57,6 @@ def count_orphans(folder):
     for one in left:
         one.kill()
     return len(left)
-
-
-def _heed_interrupts():
-    """A shell's background jobs ignore interrupts, and what they start does too."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def _works_in(process, folder):

@@ -43,16 +43,8 @@ from blockshake.study.config import check_config
 ROOT = PACKAGE.parents[1]
 SCRIPT = "<script>alert(1)</script>"
 NAMES = (
-    SCRIPT,
-    '"><img src=x onerror=alert(1)>',
-    "{{ 7*7 }}",
-    "$\\frac$",
-    "#eval(1)",
-    "--><b>",
-    "it's",
-    "&amp;",
-    "]]>",
-)
+    SCRIPT, '"><img src=x onerror=alert(1)>', "{{ 7*7 }}", "$\\frac$", "#eval(1)", "--><b>", "it's", "&amp;", "]]>",
+)  # fmt: skip
 
 
 def _plot(name):
@@ -162,12 +154,9 @@ def test_a_study_in_an_odd_folder_reaches_no_shell(odd, tmp_path):
         "--configfile",
         str(tmp_path / "study.yaml"),
     ]
-    answer = subprocess.run([*command, "-n"], capture_output=True, text=True, check=False)
-    assert answer.returncode == 0, answer.stdout + answer.stderr
-    answer = subprocess.run(
-        [*command, "--", "results/small/motions/m.nc"], capture_output=True, text=True, check=False
-    )
-    assert answer.returncode == 0, answer.stdout + answer.stderr
+    for more in (["-n"], ["--", "results/small/motions/m.nc"]):
+        answer = subprocess.run([*command, *more], capture_output=True, text=True, check=False)
+        assert answer.returncode == 0, answer.stdout + answer.stderr
     assert (tmp_path / "work" / "results" / "small" / "motions" / "m.nc").exists()
     assert not list(tmp_path.rglob("pwned"))
 

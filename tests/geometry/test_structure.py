@@ -66,114 +66,30 @@ def _set(mapping, path, value):
     ("path", "value", "message"),
     [
         (("colour",), "red", "colour: unknown key"),
-        (
-            ("bodies", 1, "colour"),
-            1,
-            "bodies.lower.colour: unknown key",
-        ),
-        (
-            ("bodies", 1),
-            {"name": "lower", "material": "stone", "position": [0, 0, 1]},
-            "bodies.lower.shape: missing key",
-        ),
-        (("bodies", 2, "name"), "lower", "bodies.lower: expected every name once"),
-        (
-            ("bodies", 1, "shape"),
-            "ball",
-            "bodies.lower.shape: expected one of slab, block, sharp, cube, not 'ball'",
-        ),
-        (("bodies", 1, "material"), "air", "bodies.lower.material: expected one of stone, not 'air'"),
-        (
-            ("bodies", 1, "orientation"),
-            [1.0, 0.1, 0.0, 0.0],
-            "bodies.lower.orientation: expected a unit quaternion [w, x, y, z]",
-        ),
-        (
-            ("bodies", 0, "velocity"),
-            [1.0, 0.0, 0.0],
-            "bodies.slab: expected no velocity of a driven body: it follows the motion",
-        ),
-        (
-            ("bodies", 2, "position"),
-            [0.0, 0.0, 2.395],
-            "bodies.upper.position: overlaps lower by 5 mm; expected at most 1 mm",
-        ),
-        (
-            ("shapes", "block", "box"),
-            [0.8, -2.4, 1.6],
-            "shapes.block.box.1: input should be greater than 0, not -2.4",
-        ),
-        (
-            ("shapes", "block", "chamfer"),
-            0.4,
-            "shapes.block: expected a chamfer below half the smallest edge length",
-        ),
-        (
-            ("shapes", "block", "mesh"),
-            "a.stl",
-            "shapes.block: expected either box (three edge lengths) or mesh (a file)",
-        ),
+        (("bodies", 1, "colour"), 1, "bodies.lower.colour: unknown key"),
+        (("bodies", 1), {"name": "lower", "material": "stone", "position": [0, 0, 1]},
+         "bodies.lower.shape: missing key"),
+        (("bodies", 2, "position"), [0.0, 0.0, 2.395],
+         "bodies.upper.position: overlaps lower by 5 mm; expected at most 1 mm"),
+        (("shapes", "block", "mesh"), "a.stl",
+         "shapes.block: expected either box (three edge lengths) or mesh (a file)"),
         (("materials", "stone", "density"), "heavy", "materials.stone.density: "),
         (("materials", "stone", "density"), float("nan"), "materials.stone.density: "),
-        (
-            ("materials", "stone", "density"),
-            "2400",
-            "materials.stone.density: input should be a valid number, not '2400'",
-        ),
-        (
-            ("materials", "stone", "density"),
-            True,
-            "materials.stone.density: input should be a valid number, not True",
-        ),
-        (
-            ("bodies", 1, "position"),
-            [0.0, "0", 0.8],
-            "bodies.lower.position.1: input should be a valid number, not '0'",
-        ),
-        (("bodies", 1, "driven"), "yes", "bodies.lower.driven: input should be a valid boolean, not 'yes'"),
-        (
-            ("friction", 0, "coefficient"),
-            "0.5",
-            "friction.0.coefficient: input should be a valid number, not '0.5'",
-        ),
-        (("restitution",), False, "restitution: input should be a valid number, not False"),
-        (("materials", "stone", "poisson_ratio"), 0.5, "materials.stone.poisson_ratio: "),
-        (("restitution",), 1.5, "restitution: input should be less than or equal to 1, not 1.5"),
-        (("friction",), [], "friction.stone.stone: missing; expected a coefficient for this pair"),
-        (
-            ("friction", 0, "pair"),
-            ["stone", "air"],
-            "friction: expected pairs of this file's materials, not 'air'",
-        ),
-        (("friction", 0, "coefficient"), -0.1, "friction.0.coefficient: "),
-        (("markers", 0, "body"), "none", "markers.face.body: expected a body of this structure, not 'none'"),
-        (
-            ("stoppers",),
-            [{"body": "none", "position": [0, 0, 0], "axis": "+x", "gap": 0.1, "stiffness": 1e7}],
-            "stoppers.0.body: expected a body of this structure, not 'none'",
-        ),
-        (
-            ("stoppers",),
-            [{"body": "lower", "position": [0, 0, 0], "axis": "x", "gap": 0.1, "stiffness": 1e7}],
-            "stoppers.0.axis: ",
-        ),
-        (("bodies",), [], "bodies: "),
+        (("materials", "stone", "density"), "2400",
+         "materials.stone.density: input should be a valid number, not '2400'"),
+        (("materials", "stone", "density"), True, "materials.stone.density: input should be a valid number, not True"),
+        (("bodies", 1, "position"), [0.0, "0", 0.8],
+         "bodies.lower.position.1: input should be a valid number, not '0'"),
     ],
-)
+)  # fmt: skip
 def test_bad_input_is_one_line_that_names_the_key(mapping, path, value, message):
-    """Each fault alone, in a structure that loads without it (docs/guide/contracts.md, structure file)."""
+    """Each fault alone, in a structure that loads without it; other values of keys: tests/own_files/wrong_keys.py."""
     build_structure(copy.deepcopy(mapping), "s.yaml", ".")
     _set(mapping, path, value)
     with pytest.raises(InputError) as error:
         build_structure(mapping, "s.yaml", ".")
     assert str(error.value).startswith(f"s.yaml: {message}")
     assert "\n" not in str(error.value)
-
-
-def test_a_pair_stated_twice_is_an_error(mapping):
-    mapping["friction"].append({"pair": ["stone", "stone"], "coefficient": 0.6})
-    with pytest.raises(InputError, match=r"s.yaml: friction.stone.stone: expected every pair once"):
-        build_structure(mapping, "s.yaml", ".")
 
 
 def test_a_whole_number_is_a_number(mapping):
@@ -220,9 +136,9 @@ def test_a_wall_of_two_thousand_blocks_loads_in_seconds(make_mapping):
         for column in range(columns)
     ]
     mapping = make_mapping(blocks, shapes={"slab": {"box": [3.0, 300.0, 0.2]}})
-    start = time.perf_counter()
+    start = time.process_time()
     structure = build_structure(mapping, "s.yaml", ".")
-    assert time.perf_counter() - start < 3.0
+    assert time.process_time() - start < 3.0
     in_rows, between_rows = rows * (columns - 1), (rows - 1) * (2 * columns - 1)
     assert structure.touching.sum() == 2 * (columns + in_rows + between_rows)
 

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from both_solvers import assert_same_bytes, both, leans, solve
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
@@ -13,35 +14,17 @@ from blockshake.geometry.structure import build_structure
 from blockshake.geometry.surface_nodes import line_nodes
 from blockshake.measurement.sensors.markers import marker_position
 from blockshake.simulation.simulate import simulate
-from blockshake.solvers.ls_dem.driver import simulate_ls_dem
-from blockshake.solvers.ls_dem.parameters import LsDemParameters
-from blockshake.solvers.nscd.driver import simulate_nscd
-from blockshake.solvers.nscd.parameters import NscdParameters
 
 G = 9.81
 K_N = 2.16e10  # N/m3, ls_dem.normal_stiffness by default
 B, H = 0.4, 0.8  # m, half width and half height of the sharp block
 INSET = 0.003 * 2.0 * B  # m, of LS-DEM's outermost nodes, its pivot
-FIELDS = ("position", "orientation", "velocity", "angular_velocity", "energy", "joint_force")
-SOLVERS = {
-    "ls-dem": lambda structure, motion, times, **keys: simulate_ls_dem(
-        structure, motion, LsDemParameters(**keys), times, 5e-5
-    ),
-    "nscd": lambda structure, motion, times, **keys: simulate_nscd(
-        structure, motion, NscdParameters(**keys), times, 1e-3
-    ),
-}
 LEVER = {"ls-dem": B - INSET, "nscd": B}
-both = pytest.mark.parametrize("solver", sorted(SOLVERS))
 
 
 def _upright(offset=None, **keys):
     body = {"name": "b", "shape": "sharp", "position": [0.0, 0.0, H], **keys}
     return body if offset is None else {**body, "mass_offset": list(offset)}
-
-
-def _lean(run):
-    return 2.0 * np.arctan2(run.orientation[:, 1, 2], run.orientation[:, 1, 0])
 
 
 @both
@@ -51,23 +34,22 @@ def test_the_null_value_changes_no_bit(solver, make_structure):
     motion = ground_motion("sine", time, {"x": 9.0 * np.sin(20.0 * time)}, "acceleration")
     stop = {"body": "b", "position": [B, 0.0, H], "axis": "+x", "gap": 1e-3, "stiffness": 1e7}
     runs = [
-        SOLVERS[solver](make_structure([_upright(offset)], friction=0.6, stoppers=[stop]), motion, time)
+        solve(solver, make_structure([_upright(offset)], friction=0.6, stoppers=[stop]), time, motion)
         for offset in (None, (0.0, 0.0, 0.0))
     ]
-    assert np.abs(_lean(runs[0])).max() > 1e-3
-    for field in FIELDS:
-        assert getattr(runs[0], field).tobytes() == getattr(runs[1], field).tobytes()
+    assert np.abs(leans(runs[0])).max() > 1e-3
+    assert_same_bytes(*runs)
 
 
 def test_ls_dem_leans_by_the_moment_over_k_i(make_structure):
     """Winkler's base: ``k_n I phi = m g (e + H phi)``, I of the rows; the centroid sinks by ``m g / (k_n A)``."""
     offset, seat = 0.05, {"slab": {"box": [2.0 * B, 2.4, 0.2]}}
     structure = make_structure([_upright((offset, 0.0, 0.0))], shapes=seat)
-    run = SOLVERS["ls-dem"](structure, None, np.linspace(0.0, 0.02, 5))
+    run = solve("ls-dem", structure, np.linspace(0.0, 0.02, 5))
     x, width = line_nodes(2.0 * B, 0.2, INSET)
     weight, stiffness = structure.mass[1] * G, K_N * 2.4 * (width @ x**2)
     # 1e-6: the start is relaxed to 1e-9 of the weight, and the lean is of second order in its own square
-    assert _lean(run)[-1] == pytest.approx(weight * offset / (stiffness - weight * H), rel=1e-6)
+    assert leans(run)[-1] == pytest.approx(weight * offset / (stiffness - weight * H), rel=1e-6)
     centroid = run.position[-1, 1] - rotation_matrices(run.orientation[-1, 1]) @ structure.mass_offset[1]
     assert H - centroid[2] == pytest.approx(weight / (K_N * 2.0 * B * 2.4), rel=1e-6)
     assert run.joint_force[-1, 0, 2] == pytest.approx(weight, rel=1e-6)
@@ -79,8 +61,8 @@ def test_a_block_on_a_post_stands_while_its_mass_centre_is_above_it(solver, offs
     """Statics: the resultant passes through the mass centre's foot, which the post of half width 0.1 m must hold."""
     shapes = {"slab": {"box": [0.2, 2.4, 0.2]}}
     structure = make_structure([_upright((offset, 0.0, 0.0))], friction=0.9, shapes=shapes)
-    run = SOLVERS[solver](structure, None, np.linspace(0.0, 0.5, 51))
-    lean = _lean(run)[-1]
+    run = solve(solver, structure, np.linspace(0.0, 0.5, 51))
+    lean = leans(run)[-1]
     # a foot 0.01 m outside turns the block by m g 0.01 / (2 I) t^2 = 0.01 rad in 0.5 s; LS-DEM's springs lean by 1e-3,
     # since nearly all of the load is on the post's last row of nodes, which stands for 1 cm of its width
     assert (np.sign(offset) * lean > 5e-3) == (not stands)
@@ -100,8 +82,8 @@ def test_onset_of_rocking_depends_on_the_side(solver, push, part, rocks, make_st
     ramp = push * part * onset * 0.5 * (1.0 - np.cos(np.pi * np.minimum(time, 1.0)))
     motion = ground_motion("ramp", time, {"x": ramp}, "acceleration")
     structure = make_structure([_upright(offset)], friction=0.9)
-    run = SOLVERS[solver](structure, motion, np.linspace(0.0, 1.8, 91))
-    lean = _lean(run)
+    run = solve(solver, structure, np.linspace(0.0, 1.8, 91), motion)
+    lean = leans(run)
     # 1 % of excess grows with p = 2.8 1/s: 0.01 * 0.38 (cosh(p 0.8 s) - 1) = 0.013 rad; LS-DEM's springs lean by
     # 5e-4; base to +x leans the block to -x
     assert (-push * lean[-1] > 8e-3) == rocks
@@ -123,7 +105,7 @@ def test_free_flight_turns_about_the_mass_centre(solver, make_structure):
         markers=[{"name": "corner", "body": "b", "position": place.tolist()}],
     )  # fmt: skip
     times = np.linspace(0.0, 1.0, 11)
-    run = SOLVERS[solver](structure, None, times)
+    run = solve(solver, structure, times)
     lever = turn.apply(offset)
     expected = np.array([0.0, 0.0, H]) + lever + times[:, None] * (speed + np.cross(spin, lever))
     np.testing.assert_allclose(run.position[:, 0], expected, atol=1e-12)
@@ -166,7 +148,7 @@ def test_a_collision_keeps_linear_and_angular_momentum(keys, make_structure):
         },
     ]  # fmt: skip
     structure = make_structure(bodies, slab=False, friction=0.6, gravity=[0.0, 0.0, 0.0])
-    run = SOLVERS[solver](structure, None, np.linspace(0.0, 0.4, 9), **numerics)
+    run = solve(solver, structure, np.linspace(0.0, 0.4, 9), **numerics)
     turn = rotation_matrices(run.orientation)
     spin = np.einsum("tbij,bjk,tblk,tbl->tbi", turn, structure.inertia, turn, run.angular_velocity)
     linear = structure.mass[:, None] * run.velocity

@@ -1,32 +1,22 @@
 """Both solvers start a driven body where its motion starts: displacement from its start, pitch as given."""
 
 import numpy as np
-import pytest
+from both_solvers import both, solve
 
 from blockshake.dynamics.motion import ground_motion
 from blockshake.geometry.structure import load_structure
-from blockshake.solvers.ls_dem.driver import simulate_ls_dem
-from blockshake.solvers.ls_dem.parameters import LsDemParameters
-from blockshake.solvers.nscd.driver import simulate_nscd
-from blockshake.solvers.nscd.parameters import NscdParameters
 
 PITCH = 1e-5  # rad; the slab's top rises by 4 um under the block's edge, within the 0.1 mm of an equilibrium
-SOLVERS = {
-    "ls-dem": lambda structure, motion, times: simulate_ls_dem(
-        structure, motion, LsDemParameters(), times, 5e-5
-    ),
-    "nscd": lambda structure, motion, times: simulate_nscd(structure, motion, NscdParameters(), times, 1e-3),
-}
 
 
-@pytest.mark.parametrize("solver", sorted(SOLVERS))
+@both
 def test_start_of_displacement_is_taken_off_and_of_pitch_is_not(solver):
     structure = load_structure("configuration-1")
     time = np.linspace(0.0, 1.0, 11)
     motion = ground_motion(
         "tilted", time, {"x": np.full(11, 0.3), "pitch_y": np.full(11, PITCH)}, "displacement"
     )
-    run = SOLVERS[solver](structure, motion, np.linspace(0.0, 0.2, 41))
+    run = solve(solver, structure, np.linspace(0.0, 0.2, 41), motion)
     assert run.status == "completed"
     np.testing.assert_allclose(run.position[:, 0], structure.position[0] + np.zeros((41, 3)), atol=1e-15)
     # quaternion of a right-handed turn about y: (cos a/2, 0, sin a/2, 0)

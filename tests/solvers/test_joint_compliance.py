@@ -2,14 +2,11 @@
 
 import numpy as np
 import pytest
+from both_solvers import assert_same_bytes, both, leans, solve
 from scipy.linalg import eigh
 from scipy.optimize import curve_fit
 
 from blockshake.dynamics.motion import ground_motion
-from blockshake.solvers.ls_dem.driver import simulate_ls_dem
-from blockshake.solvers.ls_dem.parameters import LsDemParameters
-from blockshake.solvers.nscd.driver import simulate_nscd
-from blockshake.solvers.nscd.parameters import NscdParameters
 
 G = 9.81
 K_N, K_S = 2.16e10, 9.0e9  # N/m3, ls_dem.normal_stiffness and shear_stiffness by default
@@ -19,20 +16,13 @@ MASS = AREA * 2.0 * H * 2400.0
 CENTRAL = MASS * ((2.0 * B) ** 2 + (2.0 * H) ** 2) / 12.0
 # a slab as wide as the block: LS-DEM's nodes on both sides then have the block's area and second moment
 SEAT = {"slab": {"box": [2.0 * B, DEPTH, 0.2]}}
-FIELDS = ("position", "orientation", "velocity", "angular_velocity", "energy", "joint_force")
 # what a joint gives beside its layer [m3/N], normal and shear
 OWN = {"ls-dem": (1.0 / K_N, 1.0 / K_S), "nscd": (0.0, 0.0)}
 STEP = {"ls-dem": 2e-5, "nscd": 2.5e-5}
 
 
 def _run(solver, structure, times, motion=None, time_step=None, **keys):
-    time_step = time_step or STEP[solver]
-    if solver == "ls-dem":
-        return simulate_ls_dem(structure, motion, LsDemParameters(**keys), times, time_step)
-    return simulate_nscd(structure, motion, NscdParameters(**keys), times, time_step)
-
-
-both = pytest.mark.parametrize("solver", sorted(STEP))
+    return solve(solver, structure, times, motion, time_step or STEP[solver], **keys)
 
 
 def _block(compliance, **keys):
@@ -51,8 +41,7 @@ def test_the_null_value_changes_no_bit(solver, make_structure):
         _run(solver, make_structure(bodies, friction=0.6, joints=joints), time, motion, 1e-4)
         for joints in ((), soft, [{**soft[0], "compliance": 1e-10}])
     ]
-    for field in FIELDS:
-        assert getattr(runs[0], field).tobytes() == getattr(runs[1], field).tobytes()
+    assert_same_bytes(*runs[:2])
     assert runs[0].position.tobytes() != runs[2].position.tobytes()
 
 
@@ -143,7 +132,7 @@ def test_rocking_on_the_layer(solver, make_structure):
     structure = make_structure(bodies, shapes=SEAT, joints=joints, friction=0.9, restitution=1.0)
     times = np.linspace(0.0, 20.0 * np.pi / frequency, 401)
     run = _run(solver, structure, times, time_step=4.0 * STEP[solver])
-    lean = 2.0 * np.arctan2(run.orientation[:, 1, 2], run.orientation[:, 1, 0])
+    lean = leans(run)
     found, _ = _frequency(times, lean, frequency)
     # of second order in omega dt = 0.018, and in the lean, 1e-5
     assert found == pytest.approx(frequency, rel=1e-3)
@@ -187,7 +176,7 @@ def test_nscd_rocks_on_a_stiff_layer_as_on_none(make_structure):
             None,
             1e-4,
         )
-        lean = 2.0 * np.arctan2(run.orientation[:, 1, 2], run.orientation[:, 1, 0])
+        lean = leans(run)
         after = np.flatnonzero(lean < 0.0)[0]
         upright.append(np.interp(0.0, [lean[after], lean[after - 1]], run.time[[after, after - 1]]))
         assert run.numerics["energy_residual"] < 1e-4

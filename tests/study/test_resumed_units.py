@@ -2,6 +2,7 @@
 
 import pandas as pd
 import pytest
+from cut_runs import CutShortError
 
 from blockshake import store
 from blockshake.files import content_digest, write_json
@@ -21,10 +22,6 @@ CASE = {
 }
 RUNGS = Ladder(first=0.5, increment=0.25, highest=1.25)
 DESIGN = pd.DataFrame({"materials.concrete.youngs_modulus": [3e10, 3.5e10, 4e10]})
-
-
-class CutShortError(Exception):
-    pass
 
 
 def _climb(path, store):

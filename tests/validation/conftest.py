@@ -4,7 +4,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from blockshake.geometry.structure import build_structure
 from blockshake.solvers.nscd.driver import simulate_nscd
 from blockshake.solvers.nscd.parameters import NscdParameters
 
@@ -57,27 +56,12 @@ def run_nscd():
 
 
 @pytest.fixture(scope="session")
-def make_block():
+def make_block(make_structure):
     """Structure of one sharp block on the driven slab."""
 
     def make(box, friction):
-        mapping = {
-            "name": "one block",
-            "materials": {"stone": {"density": 2400.0, "youngs_modulus": 3.45e10, "poisson_ratio": 0.2}},
-            "shapes": {"slab": {"box": [3.0, 3.0, 0.2]}, "block": {"box": box}},
-            "bodies": [
-                {
-                    "name": "slab", "shape": "slab", "material": "stone",
-                    "position": [0.0, 0.0, -0.1], "driven": True,
-                },
-                {
-                    "name": "block", "shape": "block", "material": "stone",
-                    "position": [0.0, 0.0, 0.5 * box[2]],
-                },
-            ],
-            "friction": [{"pair": ["stone", "stone"], "coefficient": friction}],
-        }  # fmt: skip
-        return build_structure(mapping, "one block", ".")
+        block = {"name": "block", "shape": "block", "position": [0.0, 0.0, 0.5 * box[2]]}
+        return make_structure([block], shapes={"block": {"box": box}}, friction=friction)
 
     return make
 

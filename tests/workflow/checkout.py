@@ -19,6 +19,11 @@ SNAKEMAKE = Path(sys.executable).with_name("snakemake")
 LIMIT = 1200  # s; against a study that hangs, not a measure of speed: other jobs may share the machine
 
 
+def heed_interrupts():
+    """Have a process that starts here heed interrupts, which a shell's background jobs and their own ignore."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
 class Job(NamedTuple):
     """A job of a dry run."""
 
@@ -71,8 +76,7 @@ class Checkout:
             text=True,
             timeout=LIMIT,
             check=False,
-            # heeds interrupts also where the tests run in a shell's background and would ignore them
-            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+            preexec_fn=heed_interrupts,
         )
 
     def jobs(self, *arguments):

@@ -7,7 +7,7 @@ import sys
 import time
 
 import pytest
-from checkout import LIMIT, Checkout
+from checkout import LIMIT, Checkout, heed_interrupts
 
 RUNS = "results/small/runs/nscd-rigid/configuration-1/000-004.nc"
 NOT_FINISHED = "Not finished. All that is finished is kept, and the same command goes on."
@@ -143,7 +143,7 @@ def test_an_interrupted_study_says_so_last(tmp_path):
     running = subprocess.Popen(
         checkout.command(RUNS), cwd=tmp_path,
         stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        preexec_fn=heed_interrupts,
     )  # fmt: skip
     deadline = time.monotonic() + LIMIT
     while not (tmp_path / "simulates").exists():

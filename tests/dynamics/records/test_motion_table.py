@@ -59,24 +59,6 @@ def test_a_correction_is_made_where_it_is_asked_for(tmp_path):
     assert abs(ends["0.1"]) < 1e-6
 
 
-def test_a_corner_is_a_record_s_too(tmp_path):
-    values = "\n".join(f"{one:.6e}" for one in WAVE / 9.80665)
-    (tmp_path / "r.at2").write_text(
-        "PEER\nEvent, Station, 90\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 2001, DT= .0050 SEC\n"
-        + values
-    )
-    peaks = []
-    for options in (["--baseline", "0.1"], ["--baseline", "0.4"], ["--baseline", "none"]):
-        assert (
-            main(["convert-motion", str(tmp_path / "r.at2"), *options, "--output", str(tmp_path / "o.csv")])
-            == 0
-        )
-        motion = load_motion(tmp_path / "o.csv")
-        peaks.append(np.abs(motion.evaluate(motion.table.breaks, 2)[:, 0]).max())
-    assert peaks[2] == pytest.approx(np.abs(WAVE).max(), rel=1e-6)
-    assert len(set(peaks)) == 3
-
-
 @pytest.mark.parametrize(
     ("options", "message"),
     [

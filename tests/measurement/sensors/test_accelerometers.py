@@ -25,16 +25,14 @@ TONE = np.sin(20.0 * TIME)
 
 
 def _structure(sensors):
+    """One block, without a slab."""
+    sharp = {"name": "block", "shape": "sharp", "position": [0.0, 0.0, 0.8]}
+    mapping = STRUCTURE.file.model_dump() | {
+        "bodies": [{"material": "concrete", **sharp}],
+        "accelerometers": sensors,
+    }
     return build_structure(
-        {
-            "name": "one-block",
-            "materials": {"concrete": {"density": 2400.0, "youngs_modulus": 3.45e10, "poisson_ratio": 0.2}},
-            "shapes": {"block": {"box": [0.8, 2.4, 1.6]}},
-            "bodies": [{"name": "block", "shape": "block", "material": "concrete", "position": [0, 0, 0.8]}],
-            "accelerometers": sensors,
-        },
-        "one-block",
-        ".",
+        mapping | {"shapes": {"sharp": {"box": [0.8, 2.4, 1.6]}}, "markers": []}, "one-block", "."
     )
 
 

@@ -2,34 +2,16 @@ import numpy as np
 import pytest
 
 from blockshake.errors import InputError
-from blockshake.geometry.structure import build_structure
 from blockshake.measurement.sensors.markers import driven_marker, marker_position
 
 ROUNDING = 1e-12  # m, of a few sums of metres
 
 
-def _structure(markers):
-    return build_structure(
-        {
-            "name": "two-bodies",
-            "materials": {"concrete": {"density": 2400.0, "youngs_modulus": 3.45e10, "poisson_ratio": 0.2}},
-            "shapes": {"slab": {"box": [3.0, 3.0, 0.2]}, "block": {"box": [0.8, 2.4, 1.6]}},
-            "bodies": [
-                {
-                    "name": name,
-                    "shape": name,
-                    "material": "concrete",
-                    "position": [0, 0, height],
-                    "driven": driven,
-                }
-                for name, height, driven in (("slab", -0.1, True), ("block", 0.8, False))
-            ],
-            "friction": [{"pair": ["concrete", "concrete"], "coefficient": 0.75}],
-            "markers": markers,
-        },
-        "two-bodies",
-        ".",
-    )
+@pytest.fixture
+def two_bodies(make_structure):
+    """Structure of a block on a slab with markers."""
+    block = {"name": "block", "shape": "sharp", "position": [0.0, 0.0, 0.8]}
+    return lambda markers: make_structure([block], markers=markers)
 
 
 BOTH = [
@@ -49,10 +31,10 @@ def _poses(angles, shifts):
     return position, orientation
 
 
-def test_marker_moves_with_the_mass_centre_and_the_arm():
+def test_marker_moves_with_the_mass_centre_and_the_arm(two_bodies):
     angle = 0.3
     position, orientation = _poses([0.0, 0.0, angle], [0.0, 0.02, 0.02])
-    places = marker_position(_structure(BOTH), position, orientation)
+    places = marker_position(two_bodies(BOTH), position, orientation)
     assert places.shape == (3, 2, 3)
     moved = places - places[0]
     np.testing.assert_allclose(moved[1], [[0.02, 0.0, 0.0]] * 2, atol=ROUNDING)
@@ -66,26 +48,26 @@ def test_marker_moves_with_the_mass_centre_and_the_arm():
     np.testing.assert_allclose(moved[2, 1], [0.02, 0.0, 0.0], atol=ROUNDING)
 
 
-def test_a_tilted_block_tilts_its_markers():
+def test_a_tilted_block_tilts_its_markers(two_bodies):
     position, orientation = _poses([0.1, 0.1], [0.0, 0.0])
-    placed = marker_position(_structure(BOTH), position[0], orientation[0])
+    placed = marker_position(two_bodies(BOTH), position[0], orientation[0])
     assert placed[0, 2] == pytest.approx(0.8 - 0.4 * np.sin(0.1) + 0.2 * np.cos(0.1), abs=ROUNDING)
 
 
-def test_nan_after_an_abort_stays():
+def test_nan_after_an_abort_stays(two_bodies):
     position, orientation = _poses([0.0, 0.1, 0.2], [0.0, 0.0, 0.0])
     position[2], orientation[2] = np.nan, np.nan
-    moved = marker_position(_structure(BOTH), position, orientation)
+    moved = marker_position(two_bodies(BOTH), position, orientation)
     assert np.isnan(moved[2]).all()
     assert np.isfinite(moved[:2]).all()
 
 
-def test_no_markers_give_no_columns():
+def test_no_markers_give_no_columns(two_bodies):
     position, orientation = _poses([0.0, 0.1], [0.0, 0.0])
-    assert marker_position(_structure([]), position, orientation).shape == (2, 0, 3)
+    assert marker_position(two_bodies([]), position, orientation).shape == (2, 0, 3)
 
 
-def test_the_slabs_marker_is_the_first_on_a_driven_body():
-    assert driven_marker(_structure(BOTH)) == "slab-face"
+def test_the_slabs_marker_is_the_first_on_a_driven_body(two_bodies):
+    assert driven_marker(two_bodies(BOTH)) == "slab-face"
     with pytest.raises(InputError, match="marker on a driven body"):
-        driven_marker(_structure(BOTH[:1]))
+        driven_marker(two_bodies(BOTH[:1]))

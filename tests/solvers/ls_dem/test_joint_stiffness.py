@@ -14,13 +14,18 @@ from blockshake.solvers.ls_dem.progress import no_joints
 from blockshake.solvers.ls_dem.surfaces import assemble_surfaces
 
 DEPTH, LEAN = 1e-5, 1e-6  # m, rad; the face stays inside
-PLACES = [
+# m; nodes of the slab are 0.2 m apart
+PLACES = [(0.0, 0.0), (0.03, 0.0), (0.1, -0.05), (0.137, 0.211), (-0.2, 0.15)]
+
+SHIFTS = [
     (0.0, 0.0),
-    (0.03, 0.0),
-    (0.1, -0.05),
-    (0.137, 0.211),
-    (-0.2, 0.15),
-]  # m; nodes of the slab are 0.2 m apart
+    (0.0022, 0.0),
+    (0.0062, -0.007),
+    (0.051, 0.0203),
+    (0.1, -0.2),
+    (-0.137, 0.211),
+    (0.251, 0.6013),
+]
 
 
 def wrench(structure, position, orientation):
@@ -28,10 +33,7 @@ def wrench(structure, position, orientation):
     bodies, state, _ = assemble_bodies(structure)
     bodies = bodies._replace(gravity=np.zeros(3))
     parameters = LsDemParameters()
-    surfaces, interfaces = (
-        assemble_surfaces(structure, parameters),
-        assemble_interfaces(structure, parameters),
-    )
+    surfaces, interfaces = (make(structure, parameters) for make in (assemble_surfaces, assemble_interfaces))
     position, orientation = (np.array([state_of[0], own]) for state_of, own in (
         (state.position, position), (state.orientation, orientation),
     ))  # fmt: skip
@@ -71,18 +73,7 @@ def test_stiffness_and_moment_are_those_of_the_face(shape, flat, height, place, 
 
 
 @pytest.mark.parametrize("yaw", [0.0, 0.01, 0.4, 1.3])
-@pytest.mark.parametrize(
-    "shift",
-    [
-        (0.0, 0.0),
-        (0.0022, 0.0),
-        (0.0062, -0.007),
-        (0.051, 0.0203),
-        (0.1, -0.2),
-        (-0.137, 0.211),
-        (0.251, 0.6013),
-    ],
-)
+@pytest.mark.parametrize("shift", SHIFTS)
 @pytest.mark.parametrize(("lower", "upper"), [("block", "block"), ("cube", "block"), ("block", "cube")])
 def test_two_blocks_have_the_stiffness_and_moment_of_their_overlap(lower, upper, shift, yaw, make_structure):
     assert worst_miss(lower, upper, shift, yaw, make_structure)[0] < 0.02

@@ -8,7 +8,7 @@ import trimesh
 
 from blockshake.errors import InputError
 from blockshake.geometry.level_set_grid import box_grid
-from blockshake.geometry.structure import build_structure, load_structure
+from blockshake.geometry.structure import load_structure
 from blockshake.solvers.ls_dem import surfaces as surfaces_module
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.ls_dem.surfaces import assemble_surfaces, check_shapes
@@ -20,7 +20,7 @@ BODY = {"name": "b", "shape": "small", "position": [0.0, 0.0, 0.2]}
 
 
 @pytest.fixture
-def structure_of_meshes(make_mapping, tmp_path):
+def structure_of_meshes(make_structure, tmp_path):
     """Structure whose further shapes are meshes: name to `trimesh.Trimesh`."""
 
     def make(bodies, meshes, **keys):
@@ -28,7 +28,7 @@ def structure_of_meshes(make_mapping, tmp_path):
         for name, mesh in meshes.items():
             mesh.export(tmp_path / f"{name}.stl")
             shapes[name] = {"mesh": f"{name}.stl"}
-        return build_structure(make_mapping(bodies, shapes=shapes, **keys), "test.yaml", tmp_path)
+        return make_structure(bodies, shapes=shapes, folder=tmp_path, **keys)
 
     return make
 

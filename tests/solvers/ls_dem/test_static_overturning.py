@@ -8,7 +8,6 @@ from blockshake.dynamics.motion import ground_motion
 from blockshake.dynamics.system import assemble_bodies
 from blockshake.geometry.polyhedron import box_vertices, convex_polyhedron, triangles
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.geometry.structure import build_structure
 from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_candidates
 from blockshake.solvers.ls_dem.contact.contact_forces import forces_into, no_loads
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
@@ -21,7 +20,7 @@ G = 9.81
 
 
 @pytest.fixture
-def stood(make_mapping, tmp_path):
+def stood(make_structure, tmp_path):
     """Block of a width, 1.5 times as deep and twice as high, on a wide slab or on its like; its b/h."""
 
     def make(width, shape, seat, chamfer):
@@ -36,8 +35,8 @@ def stood(make_mapping, tmp_path):
         if seat == "its like":
             low |= {"shape": "stone", "position": [0.0, 0.0, -width]}
         bodies = [low, {"name": "b", "shape": "stone", "position": [0.0, 0.0, width]}]
-        mapping = make_mapping(bodies, slab=False, shapes=shapes)
-        return build_structure(mapping, "test.yaml", tmp_path), (0.5 * width - leg) / width
+        structure = make_structure(bodies, slab=False, shapes=shapes, folder=tmp_path)
+        return structure, (0.5 * width - leg) / width
 
     return make
 

@@ -2,36 +2,18 @@ import numpy as np
 import pytest
 
 from blockshake.dynamics.motion import ground_motion
-from blockshake.geometry.structure import build_structure
 from blockshake.solvers.nscd.driver import simulate_nscd
 from blockshake.solvers.nscd.parameters import NscdParameters
 
-G = 9.81
-
 
 @pytest.fixture(scope="session")
-def scene():
+def scene(make_structure):
     """Structure of bodies on a driven floor whose top is at z = 0, all of one stone; friction may be a law."""
 
-    def make(shapes, bodies, *, friction=0.5, floor=True, folder=".", **keys):
-        laws = (
-            friction
-            if isinstance(friction, list)
-            else [{"pair": ["stone", "stone"], "coefficient": friction}]
-        )
+    def make(shapes, bodies, *, floor=True, **keys):
         ground = {"name": "floor", "shape": "floor", "position": [0.0, 0.0, -0.1], "driven": True}
-        return build_structure(
-            {
-                "name": "test",
-                "materials": {"stone": {"density": 2400.0, "youngs_modulus": 3.45e10, "poisson_ratio": 0.2}},
-                "shapes": {"floor": {"box": [12.0, 8.0, 0.2]}, **shapes},
-                "bodies": [{"material": "stone", **body} for body in ([ground] if floor else []) + bodies],
-                "friction": laws,
-                **keys,
-            },
-            "test.yaml",
-            folder,
-        )
+        shapes = {"floor": {"box": [12.0, 8.0, 0.2]}, **shapes}
+        return make_structure([ground] * floor + list(bodies), slab=False, shapes=shapes, **keys)
 
     return make
 

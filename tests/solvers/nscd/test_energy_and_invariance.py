@@ -60,14 +60,6 @@ def test_steps_converge(rocking_stack):
     assert numerics["max_penetration"] < 1e-6
 
 
-def test_same_input_same_bytes(rocking_stack, shaking):
-    again = simulate_nscd(
-        load_structure("configuration-1"), shaking, NscdParameters(), np.linspace(0.0, 1.5, 301)
-    )
-    for name in ("position", "orientation", "velocity", "angular_velocity", "energy", "joint_force"):
-        assert getattr(again, name).tobytes() == getattr(rocking_stack, name).tobytes()
-
-
 def test_order_of_bodies_does_not_matter(rocking_stack, shaking):
     file = load_structure("configuration-1").file.model_dump()
     order = [2, 0, 3, 1]
@@ -120,3 +112,10 @@ def test_runaway_is_told(scene, simulate):
     assert run.status == "diverged"
     assert "b " in run.reason
     assert np.isnan(run.position[-1]).all()
+
+
+@pytest.mark.parametrize("parameters", [{"theta": 1.0}, {"shrink": 0.05}])
+def test_a_stack_rests_with_other_parameters(parameters, simulate):
+    run = simulate(load_structure("configuration-3"), 0.2, **parameters)
+    # a resting block moves only while the solver settles, by the tolerance times g dt^2
+    assert np.abs(run.position - run.position[0]).max() < 1e-8

@@ -1,40 +1,18 @@
 import numpy as np
 import pytest
 
-from blockshake.geometry.structure import build_structure
 from blockshake.solvers.nscd.parameters import DeformableParameters
 from blockshake.solvers.nscd_deformable.driver import simulate_deformable
 
-SLAB = {"name": "slab", "shape": "slab", "position": [0.0, 0.0, -0.1], "driven": True}
-SHAPES = {
-    "slab": {"box": [3.0, 3.0, 0.2]},
-    "sharp": {"box": [0.8, 2.4, 1.6]},
-    "cube": {"box": [1.0, 1.0, 1.0]},
-}
-
 
 @pytest.fixture(scope="session")
-def stone():
+def stone(make_structure):
     """Structure of boxes of one material on a driven slab whose top is at z = 0."""
 
-    def make(
-        bodies, *, youngs_modulus=3.45e10, poisson_ratio=0.2, viscous_modulus=1.5e8, friction=0.75, **keys
-    ):
-        material = {
-            "density": 2400.0,
-            "youngs_modulus": youngs_modulus,
-            "poisson_ratio": poisson_ratio,
-            "viscous_modulus": viscous_modulus,
-        }
-        mapping = {
-            "name": "test",
-            "materials": {"stone": material},
-            "shapes": {**SHAPES, **keys.pop("shapes", {})},
-            "bodies": [{"material": "stone", **body} for body in [SLAB, *bodies]],
-            "friction": [{"pair": ["stone", "stone"], "coefficient": friction}],
-            **keys,
-        }
-        return build_structure(mapping, "test.yaml", ".")
+    def make(bodies, *, friction=0.75, **keys):
+        stone = {"density": 2400.0, "youngs_modulus": 3.45e10, "poisson_ratio": 0.2, "viscous_modulus": 1.5e8}
+        material = {name: keys.pop(name, value) for name, value in stone.items()}
+        return make_structure(bodies, materials={"stone": material}, friction=friction, **keys)
 
     return make
 
