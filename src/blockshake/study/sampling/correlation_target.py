@@ -1,14 +1,11 @@
 """Target correlation matrices: reading, checking, and the nearest valid one to an invalid one."""
 
-import csv
-import io
-
 import numpy as np
 import pandas as pd
 
 from blockshake.errors import InputError
-from blockshake.files import read_text
 from blockshake.tables.numbers import plain_number
+from blockshake.tables.table_file import csv_rows
 
 _ROUNDING = 1e-6  # of entries typed with six digits
 _SMALLEST_EIGENVALUE = 1e-6  # below it Cholesky's factor is noise
@@ -36,8 +33,7 @@ def load_correlation(path):
         Missing file, not square, names that differ, an entry that is no number, or no correlation
         matrix (see `check_correlation`).
     """
-    text = read_text(path).removeprefix("\ufeff")
-    rows = [[cell.strip() for cell in row] for row in csv.reader(io.StringIO(text)) if any(row)]
+    rows = csv_rows(path)
     if len(rows) < 2:
         raise InputError(path, "", "expected a square table with names in the header and in the first column")
     names = rows[0][1:]

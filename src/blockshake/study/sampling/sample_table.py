@@ -1,14 +1,12 @@
 """Samples as a CSV table: a row each, columns the dotted names of the variables."""
 
-import csv
-import io
-
 import numpy as np
 import pandas as pd
 
 from blockshake.errors import InputError
-from blockshake.files import read_text, write_text
+from blockshake.files import write_text
 from blockshake.tables.numbers import plain_number
+from blockshake.tables.table_file import csv_rows
 
 
 def write_design(path, values):
@@ -36,10 +34,10 @@ def load_design(path):
     InputError
         Missing file, no rows, a name twice, a row of another length, or an entry that is no finite number.
     """
-    rows = [row for row in csv.reader(io.StringIO(read_text(path).removeprefix("\ufeff"))) if row]
+    rows = csv_rows(path)
     if len(rows) < 2:
         raise InputError(path, "", "expected a header of parameter names and one row a sample")
-    names = [name.strip() for name in rows[0]]
+    names = rows[0]
     for name in names:
         if not name or names.count(name) > 1:
             raise InputError(path, name, "expected every column to have a name of its own")
@@ -55,5 +53,5 @@ def load_design(path):
 def _finite(cell, path, key):
     value = float(plain_number(cell) or "nan")
     if not np.isfinite(value):
-        raise InputError(path, key, f"expected a finite number, not '{cell.strip()}'")
+        raise InputError(path, key, f"expected a finite number, not '{cell}'")
     return value
