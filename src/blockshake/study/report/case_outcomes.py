@@ -1,11 +1,13 @@
 """How the samples of every case ended by every model, and where two models differ most."""
 
+from collections import Counter
 from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from blockshake.measurement.motion.joints import find_joints, find_leaves
 from blockshake.pages.rows import face_markers
 from blockshake.simulation.rocking import plastic_shares
 from blockshake.statistics.intervals import SURE_FROM, share_interval
@@ -34,6 +36,14 @@ class Outcome(NamedTuple):
         Smallest median margin against overturning of any joint [1]; NaN where no joint has one.
     over : str
         The joint.
+    leaves : dict of str to float
+        The same of every leaf of `find_leaves` [1].
+    blows : float
+        Median number of `pounding`.
+    blow : float
+        Median velocity of the fastest one [m/s].
+    struck : str
+        The pair that is struck fastest in most samples; empty without blows.
     """
 
     collapsed: int
@@ -48,6 +58,10 @@ class Outcome(NamedTuple):
     end: float
     margin: float
     over: str
+    leaves: dict
+    blows: float
+    blow: float
+    struck: str
 
     @property
     def share(self):
@@ -87,13 +101,16 @@ def _outcome(case, response):
     at = response.envelope.sel(frame="slab", quantile=0.5, marker=list(blocks.values()))
     farthest = int(at["peak"].argmax("marker"))
     block, marker = list(blocks.items())[farthest]
-    peaks = counted_samples(response.samples)["peak"].sel(frame="slab", marker=marker)
+    counted = counted_samples(response.samples)
+    peaks = counted["peak"].sel(frame="slab", marker=marker)
     peak, curve = float(at["peak"][farthest]), response.envelope["marker_displacement"]
     late = curve.sel(frame="slab", quantile=0.5, marker=marker, axis="x")
     late = late.sel(time=slice(float(late["time"][-1]) - _LAST, None))
     rests = float(late.max() - late.min()) <= max(STILL, _RESTLESS * peak)
     margins = at["joint_margin"].dropna("joint")
     least = int(margins.argmin("joint")) if margins.size else None
+    upper, every = find_joints(case.structure)[0][:, 1], at["joint_margin"].to_numpy()
+    struck = Counter(counted["blow_pair"].values.tolist())
     return Outcome(
         collapsed=ended.collapsed + ended.falling,
         falling=ended.falling,
@@ -107,6 +124,13 @@ def _outcome(case, response):
         end=abs(float(at["residual"][farthest])) if rests else np.nan,
         margin=np.nan if least is None else float(margins[least]),
         over="" if least is None else str(margins["joint"].values[least]),
+        leaves={
+            name: float(np.min(every[np.isin(upper, leaf) & np.isfinite(every)], initial=np.inf))
+            for name, leaf in find_leaves(case.structure).items()
+        },
+        blows=float(at["blows"]),
+        blow=float(at["blow_velocity"]),
+        struck=max(struck, key=lambda pair: (pair != "", struck[pair])),
     )
 
 
