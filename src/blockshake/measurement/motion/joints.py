@@ -1,6 +1,6 @@
 """Joints of a structure: where they are, their normals, and the motion of the upper block against the lower one."""
 
-import os
+from itertools import takewhile
 
 import numpy as np
 import xarray as xr
@@ -48,14 +48,15 @@ def find_joints(structure):
 def find_leaves(structure):
     """Blocks that joints hold together, such as a leaf of a wall: indices of the bodies by the name of the leaf.
 
-    The name is all that the names of its blocks begin with; where that tells it from no other, the first and the last
-    of them.
+    The name is the words, between hyphens, that the names of its blocks begin with; where these tell it from no other,
+    the first and the last block.
     """
     _, group = connected_components(structure.touching & ~structure.driven[:, None] & ~structure.driven)
     free = np.flatnonzero(~structure.driven)
     leaves = [free[group[free] == one] for one in dict.fromkeys(group[free].tolist())]
     names = [[structure.body_names[body] for body in leaf] for leaf in leaves]
-    begin = [os.path.commonprefix(one).rstrip("-_ ") for one in names]
+    words = [zip(*(name.split("-") for name in one), strict=False) for one in names]
+    begin = ["-".join(row[0] for row in takewhile(lambda row: len(set(row)) == 1, rows)) for rows in words]
     told = all(begin) and len(set(begin)) == len(begin)
     ends = (" to ".join(dict.fromkeys((one[0], one[-1]))) for one in names)
     return dict(zip(begin if told else ends, leaves, strict=True))
