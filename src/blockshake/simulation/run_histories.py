@@ -210,4 +210,4 @@ _ROCKING = {
     "joint_margin": "least margin against overturning of all above the joint",
     "joint_spin_kept": "share of the spin that impacts of the joint keep, median over them",
 }
-RUN_FIGURES = (*_FIGURES, *_ROCKING, "blows", "blow_velocity")
+JOINT_FIGURES, BLOW_FIGURES = (*_FIGURES, *_ROCKING), ("blows", "blow_velocity", "blow_pair")

@@ -143,15 +143,16 @@ def test_blows_are_told_by_case_and_model(content):
     assert "blows" not in parts(content)[2]  # of one leaf that nothing strikes
     case = content.cases[FIRST]
     one = case.responses["ls-dem"]
-    envelope = one.envelope.assign(
-        blows=one.envelope["blows"] + 12, blow_velocity=one.envelope["blows"] + 0.4
-    )
-    pairs = ["a and b"] * 4 + ["a and c"] * 3 + [""] * 3
-    samples = one.samples.assign(blow_pair=("sample", pairs))
-    struck = replace(one, envelope=envelope, samples=samples)
+    made = {
+        "blows": [3, 12, 1] + 7 * [0],
+        "blow_velocity": [0.2, 0.3, 0.4] + 7 * [0.0],
+        "blow_pair": ["a and b", "a and b", "a and c"] + 7 * [""],
+    }
+    struck = replace(one, samples=one.samples.assign({name: ("sample", made[name]) for name in made}))
     (said,) = parts(changed(content, FIRST, responses={**case.responses, "ls-dem": struck}))[2]["blows"]
     assert said.startswith(
-        f"{FIRST}: 12 by LS-DEM, the fastest at 0.40 m/s (a and b); none by NSCD rigid; none by NSCD elastic; "
+        f"{FIRST}: in 3 of 10 samples by LS-DEM, at most 12 blows in one, the fastest at 0.40 m/s (a and c); none by "
+        "NSCD rigid; none by NSCD elastic; "
     )
     assert said.endswith("which no model has.")
 

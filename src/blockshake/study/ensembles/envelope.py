@@ -6,7 +6,7 @@ import xarray as xr
 from blockshake.dynamics.system import FALLEN, FINISHED
 from blockshake.files import history
 from blockshake.geometry.reference_block import half_width
-from blockshake.simulation.run_histories import RUN_FIGURES
+from blockshake.simulation.run_histories import JOINT_FIGURES
 from blockshake.statistics.intervals import (
     CONFIDENCE,
     quantile_interval,
@@ -18,7 +18,7 @@ from blockshake.study.ensembles.ensemble import POSES, describe, in_frames, join
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 BOUNDS = {"lower": 0.0, "upper": 1.0}
 _AT_HAND = 2**25  # displacements read from files at a time: 256 MiB
-_SINGLE = ("peak", "residual", "peak_rotation", *RUN_FIGURES)  # numbers of a sample
+_SINGLE = ("peak", "residual", "peak_rotation", *JOINT_FIGURES)  # numbers of a sample
 _DESCRIBED = {
     "marker_envelope": ("smallest and largest marker displacement over the samples", "m"),
     "marker_displacement": ("marker displacement since the start", "m"),
@@ -63,7 +63,7 @@ def envelope(ensemble, largest_drift, displacement=None):
         ``marker_envelope(frame, bound, time, marker, axis)`` [m]: the smallest and the largest displacement at each
         time, coordinate ``bound`` lower and upper; ``marker_displacement(frame, quantile, time, marker, axis)`` [m];
         ``peak`` and ``residual(quantile, frame, marker)`` [m]; ``peak_rotation(quantile, body)`` [rad];
-        `joint_figures` ``(quantile, joint)`` or ``(quantile)``;
+        `joint_figures` of joints ``(quantile, joint)``;
         ``contributing(time)``: samples with a value at that time; ``collapse_probability`` and
         ``drift_probability(marker)`` [1]. NaN where no sample has a value. The statistics of single numbers have their
         95 % limits beside them, ``NAME_interval(bound, ...)``, those of quantiles NaN of too few samples

@@ -216,7 +216,8 @@ def _blows(found):
         if not any(one.struck for one in ended.values()):
             continue
         words = [
-            f"{number(one.blows)} by {model_label(model)}, the fastest at {one.blow:.2f} m/s ({one.struck})"
+            f"in {share_words(one.struck, one.counted)} samples by {model_label(model)}, at most "
+            f"{count_words(one.blows, 'blow')} in one, the fastest at {one.blow:.2f} m/s ({one.pair})"
             if one.struck
             else f"none by {model_label(model)}"
             for model, one in ended.items()
@@ -226,9 +227,7 @@ def _blows(found):
         apart = any(len(one.leaves) > 1 for ended in found.values() for one in ended.values())
         return ["None in any run that counts."] if apart else []
     said[MOST:] = []
-    said[-1] += (
-        " Medians of the samples. The force of a blow is not told: it depends on how edges crush, which no model has."
-    )
+    said[-1] += " The force of a blow is not told: it depends on how edges crush, which no model has."
     return said
 
 

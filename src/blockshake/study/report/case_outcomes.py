@@ -1,6 +1,5 @@
 """How the samples of every case ended by every model, and where two models differ most."""
 
-from collections import Counter
 from itertools import combinations
 from typing import NamedTuple
 
@@ -38,12 +37,10 @@ class Outcome(NamedTuple):
         The joint.
     leaves : dict of str to float
         The same of every leaf of `find_leaves` [1].
-    blows : float
-        Median number of `pounding`.
-    blow : float
-        Median velocity of the fastest one [m/s].
-    struck : str
-        The pair that is struck fastest in most samples; empty without blows.
+    struck, blows : int
+        Samples with blows of `pounding`, and the most in a sample.
+    blow, pair : float, str
+        Velocity of the fastest of all [m/s], and its blocks.
     """
 
     collapsed: int
@@ -59,9 +56,10 @@ class Outcome(NamedTuple):
     margin: float
     over: str
     leaves: dict
-    blows: float
+    struck: int
+    blows: int
     blow: float
-    struck: str
+    pair: str
 
     @property
     def share(self):
@@ -110,7 +108,7 @@ def _outcome(case, response):
     margins = at["joint_margin"].dropna("joint")
     least = int(margins.argmin("joint")) if margins.size else None
     upper, every = find_joints(case.structure)[0][:, 1], at["joint_margin"].to_numpy()
-    struck = Counter(counted["blow_pair"].values.tolist())
+    blows, velocity = counted["blows"].to_numpy(), counted["blow_velocity"].to_numpy()
     return Outcome(
         collapsed=ended.collapsed + ended.falling,
         falling=ended.falling,
@@ -128,9 +126,10 @@ def _outcome(case, response):
             name: float(np.min(every[np.isin(upper, leaf) & np.isfinite(every)], initial=np.inf))
             for name, leaf in find_leaves(case.structure).items()
         },
-        blows=float(at["blows"]),
-        blow=float(at["blow_velocity"]),
-        struck=max(struck, key=lambda pair: (pair != "", struck[pair])),
+        struck=int((blows > 0).sum()),
+        blows=int(blows.max()),
+        blow=float(velocity.max()),
+        pair=str(counted["blow_pair"].values[velocity.argmax()]),
     )
 
 
