@@ -1,7 +1,5 @@
 """Pounding of blocks that stand apart, such as two leaves of a wall: how often their gap closes, and how fast."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from blockshake.dynamics.collapse import COSINE_OF_TILT
@@ -12,16 +10,9 @@ _CLOSED = 1e-4  # m
 _SLOWEST = 0.05  # m/s: what is slower leans and does not strike
 
 
-class Pounding(NamedTuple):
-    """Blows of a run: how many, the velocity of the fastest one [m/s], and its two bodies; 0 and empty without any."""
-
-    blows: int
-    velocity: float
-    pair: str
-
-
 def pounding(run, structure):
-    """`Pounding` of the blocks that stood apart beside each other at the start and touched in a run.
+    """Blows of a run between blocks that stood apart beside each other at the start: how many, the velocity of the
+    fastest [m/s], and its two blocks; 0 and an empty text without any.
 
     Notes
     -----
@@ -47,7 +38,7 @@ def pounding(run, structure):
         blows += len(found)
         if max(found, default=0.0) > velocity:
             velocity, pair = float(max(found)), f"{names[a]} and {names[b]}"
-    return Pounding(blows, velocity, pair)
+    return blows, velocity, pair
 
 
 def _distances(structure, position, turns, body, other, normal):

@@ -144,7 +144,7 @@ def joint_figures(run, structure):
         ``joint_compression(joint)``: normal force that is exceeded for 1 % of the time [N]; ``joint_uplift`` and
         ``joint_slip(joint)``: largest opening and slip at the middle of the face, see `run_histories` [m]. NaN where
         a joint is not known there. ``joint_margin(joint)``, from `overturning_margins`, and ``joint_spin_kept(joint)``,
-        from `spin_kept` [1]. Coordinate ``joint``, ``lower-upper``, from the foundation up. And the `Pounding`:
+        from `spin_kept` [1]. Coordinate ``joint``, ``lower-upper``, from the foundation up. And of `pounding`:
         ``blows`` [1], ``blow_velocity`` [m/s] and ``blow_pair``.
 
     Notes

@@ -58,8 +58,8 @@ def test_what_stands_and_what_may_collapse_is_that_of_the_samples(content):
     assert stands.startswith(f"{FIRST} stands under basso-tirreno x 2 (2.47 m/s")
     upper = 100.0 * share_interval(0, 4)[1]  # of the model with the fewest samples
     assert (
-        f"none of 28 runs by 4 models collapses; 4 of a case by a model leave up to {upper:.0f} % for a collapse"
-        in stands
+        f"none of 28 runs by 4 models collapses; from 4 runs of a case by a model, "
+        f"one may still be as likely as {upper:.0f} %" in stands
     )
     # one collapsed and one failed of six
     assert may.endswith(": of the runs, 1 of 5 by NSCD rigid do, and none by the others.")

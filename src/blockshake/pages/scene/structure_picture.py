@@ -37,11 +37,10 @@ def plot_understood(structure, width=_WIDTH):
     heights = [scale * sizes[row, 1].max() + _ABOVE for row in rows]
     figure = new_figure(sum(heights), width)
     parts = figure.subfigures(len(rows), 1, height_ratios=heights, squeeze=False)[:, 0]
-    panels = [
-        axes
-        for part, row in zip(parts, rows, strict=True)
-        for axes in part.subplots(1, len(row), width_ratios=sizes[row, 0], squeeze=False)[0]
-    ]
+    panels = []
+    for part, row in zip(parts, rows, strict=True):
+        panels += [*part.subplots(1, len(row), width_ratios=sizes[row, 0], squeeze=False)[0]]
+        panels[row[0]].set_ylabel("z [m]")
     pairs, middles = find_joints(structure)
     for axes, (title, label, scene), (low, up) in zip(panels, views, ends, strict=True):
         draw_blocks(axes, scene, structure, structure.position, structure.orientation)
@@ -58,8 +57,6 @@ def plot_understood(structure, width=_WIDTH):
         at = scene.seen(middles[[scene.shown.issuperset(pair) for pair in pairs.tolist()]])
         axes.plot(at[:, 0], at[:, 1], "D", color=RED, markersize=2.5, label=f"{len(pairs)} joints found")
         _draw_sensors(axes, scene, structure)
-    for row in rows:
-        panels[row[0]].set_ylabel("z [m]")
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower right")
     blocks = int((~structure.driven).sum())
     figure.suptitle(f"{structure.file.name}: {blocks} blocks", fontsize=8.0)
