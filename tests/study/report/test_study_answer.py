@@ -59,7 +59,7 @@ def test_what_stands_and_what_may_collapse_is_that_of_the_samples(content):
     upper = 100.0 * share_interval(0, 4)[1]  # of the model with the fewest samples
     assert (
         f"none of 28 runs by 4 models collapses; from 4 runs of a case by a model, "
-        f"one may still be as likely as {upper:.0f} %" in stands
+        f"a collapse may still be as likely as {upper:.0f} %" in stands
     )
     # one collapsed and one failed of six
     assert may.endswith(": of the runs, 1 of 5 by NSCD rigid do, and none by the others.")
