@@ -124,8 +124,8 @@ def _verdict(content, found):
         upper, fewest = max(one.limits[1] for one in every), min(one.counted for one in every)
         words.append(
             f"{named(names, 'stand')}: none of {count_words(runs(names), 'run')} by {_by(found, names)} collapses; "
-            f"from {count_words(fewest, 'run')} of a case by a model, a collapse may still be as likely as {_whole(upper)} "
-            "% (limit of 95 %)"
+            f"from {count_words(fewest, 'run')} of a case by a model, a collapse may still be as likely as "
+            f"{_whole(upper)} % (limit of 95 %)"
         )
     for name in sides["may"]:
         by = [
