@@ -18,9 +18,10 @@ def pounding(run, structure):
     -----
     The gap of two convex bodies is told by the two faces that look at each other at the start, each of which turns with
     its body: the larger distance of the other body's nearest corner. A blow is where the gap closes to 0.1 mm, or would
-    by its velocity, between two rows of the run, and opens before it closes again; its velocity is that over the two
-    rows before it. Slower ones than 0.05 m/s are left out. Neither a force nor an impulse is told: a run holds forces
-    at its rows alone, and a blow is over before the next one.
+    by its velocity, between two rows of the run, and opens before it closes again; its velocity is the larger one of
+    the two steps between rows before it, the last of which may hold a part of the blow. Slower ones than 0.05 m/s are
+    left out. Neither a force nor an impulse is told: a run holds forces at its rows alone, and a blow is over before
+    the next one.
     """
     names, up = structure.body_names, np.array(structure.file.gravity)
     pairs = np.array([[names.index(name) for name in run[side].values] for side in ("lower", "upper")], int).T
@@ -57,4 +58,4 @@ def _blows(gap, step):
     hits = (
         (now > _CLOSED) & (np.minimum(now - closing * step[1:], following) <= _CLOSED) & (closing > _SLOWEST)
     )
-    return closing[hits & ~np.append(False, hits[:-1])]
+    return np.maximum(closing, np.append(0.0, closing[:-1]))[hits & ~np.append(False, hits[:-1])]
