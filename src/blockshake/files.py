@@ -1,10 +1,8 @@
 """Reading and writing files: strict YAML, atomic writes, digests of contents."""
 
 import contextlib
-import csv
 import errno
 import hashlib
-import io
 import json
 import os
 import re
@@ -135,12 +133,6 @@ def read_text(path):
         return read_bytes(path).decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError:
         raise InputError(path, "", "expected a text file; its bytes are not UTF-8") from None
-
-
-def read_cells(path):
-    """Rows of a CSV file that a user named, lists of stripped text; a byte order mark is no part of the first one."""
-    text = read_text(path).removeprefix("\ufeff")
-    return [[cell.strip() for cell in row] for row in csv.reader(io.StringIO(text))]
 
 
 def read_foreign_text(path):

@@ -99,6 +99,19 @@ def test_a_table_scales_its_records_or_sets_their_levels(folder):
     assert [motion_figures(one)["peak_velocity"] for one in of.strongest()] == pytest.approx([2.5, 5.0])
 
 
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_a_table_may_have_semicolons_or_tabs_and_decimal_commas(folder, separator):
+    table = folder.parent / "set.csv"
+    rows = (("file", "level"), ("records/record-0.csv", "2,5"), ("", ""), ("records/record-0.csv", "5"))
+    text = "\r\n".join(map(separator.join, rows))
+    table.write_bytes(text.encode("utf-8-sig"))
+    assert is_record_set(table)
+    assert [record.level for record in read_records(table)] == [2.5, 5.0]
+    table.write_text(text + separator.join(("\nrecords/record-1.csv", "1.012")))  # thousands, or a slip
+    with pytest.raises(InputError, match=r"expected one decimal sign, found '2,5' and '1\.012'"):
+        read_records(table)
+
+
 @pytest.mark.parametrize(
     ("content", "said"),
     [

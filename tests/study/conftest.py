@@ -60,6 +60,9 @@ def make_run():
                 "joint_slip": ("joint", [np.abs(amplitude).max()], {"units": "m", "long_name": "slip"}),
                 "joint_margin": ("joint", [np.cos(angle)], {"units": "1", "long_name": "margin"}),
                 "joint_spin_kept": ("joint", [np.nan], {"units": "1", "long_name": "spin kept"}),
+                "blows": ((), 0.0, {"units": "1", "long_name": "blows"}),
+                "blow_velocity": ((), 0.0, {"units": "m s-1", "long_name": "velocity of the fastest blow"}),
+                "blow_pair": ((), ""),
             },
             coords={
                 "time": ("time", TIME, {"units": "s"}),

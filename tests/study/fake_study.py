@@ -211,6 +211,9 @@ class FakeStudy:
                     {"units": "1"},
                 ),
                 "joint_spin_kept": ("joint", np.full(len(joints), 0.9 - 0.2 * strength), {"units": "1"}),
+                "blows": ((), 0.0, {"units": "1"}),
+                "blow_velocity": ((), 0.0, {"units": "m s-1"}),
+                "blow_pair": ((), ""),
             },
             coords={
                 "time": self.time,

@@ -7,7 +7,7 @@ import openpyxl
 import pytest
 
 from blockshake.errors import InputError
-from blockshake.tables.table_file import TableLayout, read_table
+from blockshake.tables.table_file import TableLayout, csv_rows, read_table
 from blockshake.tables.units import unit_size
 
 MM = unit_size("displacement", "mm", "here", "unit")
@@ -32,6 +32,20 @@ def _column(path, name, size=Decimal(1), **layout):
 def test_a_text_with_any_separator(text, layout, encoding, tmp_path):
     (tmp_path / "t.csv").write_bytes(text.replace("a b", "Prüfkörper").encode(encoding))
     assert _column(tmp_path / "t.csv", "Prüfkörper", **layout) == [1.5, -2e-3]
+
+
+@pytest.mark.parametrize(
+    ("text", "cells"),
+    [
+        ("a,b\n1.5, x\n,\n", [["a", "b"], ["1.5", "x"]]),
+        ("a;b\n1,5;x,5\n", [["a", "b"], ["1.5", "x,5"]]),
+        ('a,b\n"1,5",-2\n', [["a", "b"], ["1.5", "-2"]]),
+        ("", []),
+    ],
+)
+def test_rows_of_a_spreadsheet(text, cells, tmp_path):
+    (tmp_path / "t.csv").write_text(text)
+    assert csv_rows(tmp_path / "t.csv") == cells
 
 
 def test_columns_without_names_are_counted(tmp_path):

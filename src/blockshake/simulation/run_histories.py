@@ -6,6 +6,7 @@ import xarray as xr
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.joints import contact_normals, find_joints, joint_coordinates
 from blockshake.simulation.energy_residual import unexplained_energy
+from blockshake.simulation.pounding import pounding
 from blockshake.simulation.rocking import overturning_margins, spin_kept
 from blockshake.simulation.run_dataset import histories
 
@@ -143,7 +144,8 @@ def joint_figures(run, structure):
         ``joint_compression(joint)``: normal force that is exceeded for 1 % of the time [N]; ``joint_uplift`` and
         ``joint_slip(joint)``: largest opening and slip at the middle of the face, see `run_histories` [m]. NaN where
         a joint is not known there. ``joint_margin(joint)``, from `overturning_margins`, and ``joint_spin_kept(joint)``,
-        from `spin_kept` [1]. Coordinate ``joint``, ``lower-upper``, from the foundation up.
+        from `spin_kept` [1]. Coordinate ``joint``, ``lower-upper``, from the foundation up. And of `pounding`:
+        ``blows`` [1], ``blow_velocity`` [m/s] and ``blow_pair``.
 
     Notes
     -----
@@ -175,6 +177,7 @@ def joint_figures(run, structure):
         "joint_margin": overturning_margins(*moved),
         "joint_spin_kept": spin_kept(structure, time, *moved[1:], spin),
     }
+    blows, velocity, pair = pounding(run, structure)
     return xr.Dataset(
         {
             name: ("joint", figure(history, statistic), {"units": units, "long_name": long_name})
@@ -183,6 +186,11 @@ def joint_figures(run, structure):
         | {
             name: ("joint", values, {"units": "1", "long_name": _ROCKING[name]})
             for name, values in rocking.items()
+        }
+        | {
+            "blows": ((), float(blows), {"units": "1", "long_name": "blows of blocks that stand apart"}),
+            "blow_velocity": ((), velocity, {"units": "m s-1", "long_name": "velocity of the fastest blow"}),
+            "blow_pair": ((), pair, {"long_name": "blocks of the fastest blow"}),
         },
         coords={"joint": np.array([f"{names[lower]}-{names[upper]}" for lower, upper in pairs], dtype=str)},
     )
@@ -202,4 +210,4 @@ _ROCKING = {
     "joint_margin": "least margin against overturning of all above the joint",
     "joint_spin_kept": "share of the spin that impacts of the joint keep, median over them",
 }
-JOINT_FIGURES = (*_FIGURES, *_ROCKING)
+JOINT_FIGURES, BLOW_FIGURES = (*_FIGURES, *_ROCKING), ("blows", "blow_velocity", "blow_pair")

@@ -171,6 +171,30 @@ def read_table(source, layout):
     return CellTable(str(source), names, notes, list(lines), list(cells), decimal)
 
 
+def csv_rows(path):
+    """Rows of text cells of a CSV that a spreadsheet wrote, without empty rows: the header first.
+
+    Cells stand between commas, or between semicolons or tabs where the header has any. A decimal comma comes back as a
+    point.
+
+    Raises
+    ------
+    InputError
+        Missing file, or numbers with a decimal comma beside others with a point.
+    """
+    lines = read_foreign_text(path).splitlines()
+    separator = next((sign for sign in "\t;" if lines and sign in lines[0]), ",")
+    rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=separator)]
+    rows = [row for row in rows if any(row)]
+    comma = next((cell for row in rows for cell in row if "," in cell and cell_number(cell, ",")), None)
+    if comma is None:
+        return rows
+    point = next((cell for row in rows for cell in row if "." in cell and plain_number(cell)), None)
+    if point is not None:
+        raise InputError(path, "", f"expected one decimal sign, found '{comma}' and '{point}'")
+    return [[cell_number(cell, ",") or cell for cell in row] for row in rows]
+
+
 def path_and_sheet(source):
     """Path of a file, and the name of the sheet behind ``#``."""
     path, _, sheet = str(source).partition("#") if not Path(source).exists() else (str(source), "", "")

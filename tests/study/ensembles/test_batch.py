@@ -22,7 +22,9 @@ def test_a_model_runs_its_solver_with_its_settings_and_shares_runs_that_are_the_
 
     monkeypatch.setattr(batch, "simulate", simulated)
     monkeypatch.setattr(
-        batch, "joint_figures", lambda run, structure: run[[name for name in run if "joint" in name]]
+        batch,
+        "joint_figures",
+        lambda run, structure: run[[name for name in run if name.startswith(("joint", "blow"))]],
     )
     rows = pd.DataFrame({"friction.concrete.concrete": [0.7]})
     store, motion = Store(tmp_path, "source", print), load_motion("basso-tirreno")

@@ -37,7 +37,7 @@ def test_page_has_the_motion_of_the_files(case):
 
 def test_samples_are_named_with_their_model_and_their_end(case):
     labels = [one["label"] for one in json.loads(moving_samples(case))["moving"]["samples"]]
-    assert labels[0].startswith("LS-DEM, sample 4: median peak, ")
+    assert labels[0].startswith("LS-DEM, sample 4: median, ")
     assert sum("the only sample" in one for one in labels) == 1  # of elastic NSCD
     assert any(one.endswith("collapsed at 1 s") for one in labels) == any(
         "collapsed" in one.shown["status"] for one in case.responses.values()

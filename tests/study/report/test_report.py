@@ -21,7 +21,7 @@ from blockshake.study.report import content
 from blockshake.study.report.content import load_content
 from blockshake.study.report.opening_sections import failures
 from blockshake.study.report.report import compose, make_case_report, make_report
-from blockshake.study.report.result_sections import band_remarks, early_end
+from blockshake.study.report.result_sections import band_remarks
 
 
 def test_tags_close_and_ids_are_unique(page):
@@ -252,15 +252,6 @@ def test_bands_that_are_lines_are_counted(fake):
     (said,) = [block.text for block in band_remarks(case, markers)]
     assert said.startswith("NSCD rigid: the samples of 1 of 3 blocks differ by less")
     assert "close to lines" in said
-
-
-def test_a_window_that_ends_with_the_motion_has_no_remark(fake):
-    content = load_content(fake.study, fake.results, fake.logs)
-    case, (motion,) = content.cases["configuration-1"], content.motions.values()
-    (remark,) = early_end(case, motion)
-    assert remark.text.startswith("The window ends before the motion")
-    motion.attrs["duration"] = 2.0
-    assert early_end(case, motion) == []
 
 
 def test_study_without_measured_tests_tells_of_its_samples_alone(fake):

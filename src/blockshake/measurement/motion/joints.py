@@ -1,7 +1,10 @@
 """Joints of a structure: where they are, their normals, and the motion of the upper block against the lower one."""
 
+from itertools import takewhile
+
 import numpy as np
 import xarray as xr
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial.transform import Rotation
 
 from blockshake.errors import InputError
@@ -40,6 +43,23 @@ def find_joints(structure):
     first, second = pairs.T
     centres = 0.5 * (np.maximum(low[first], low[second]) + np.minimum(high[first], high[second]))
     return pairs, centres
+
+
+def find_leaves(structure):
+    """Blocks that joints hold together, such as a leaf of a wall: indices of the bodies by the name of the leaf.
+
+    The name is the words, between hyphens, that the names of its blocks begin with; where these tell it from no other,
+    the first and the last block.
+    """
+    _, group = connected_components(structure.touching & ~structure.driven[:, None] & ~structure.driven)
+    free = np.flatnonzero(~structure.driven)
+    leaves = [free[group[free] == one] for one in dict.fromkeys(group[free].tolist())]
+    names = [[structure.body_names[body] for body in leaf] for leaf in leaves]
+    words = [zip(*(name.split("-") for name in one), strict=False) for one in names]
+    begin = ["-".join(row[0] for row in takewhile(lambda row: len(set(row)) == 1, rows)) for rows in words]
+    told = all(begin) and len(set(begin)) == len(begin)
+    ends = (" to ".join(dict.fromkeys((one[0], one[-1]))) for one in names)
+    return dict(zip(begin if told else ends, leaves, strict=True))
 
 
 def joint_coordinates(structure, position, rotation):

@@ -34,10 +34,13 @@ class Scene:
     structure : Structure
     view : str
         One of `VIEWS`.
+    shown : sequence of int, optional
+        Bodies that are seen, all by default.
     """
 
-    def __init__(self, structure, view):
+    def __init__(self, structure, view, shown=None):
         self._axes = VIEWS[view]
+        self.shown = frozenset(range(len(structure.mass)) if shown is None else map(int, shown))
         self._solids = [structure.solid(body) for body in range(len(structure.mass))]
         self._driven = structure.driven
 
@@ -48,7 +51,8 @@ class Scene:
     def extent(self, position, orientation):
         """Lowest and highest place to the right and up of any corner over all poses, two arrays of shape (2,) [m]."""
         low, high = np.full(2, np.inf), np.full(2, -np.inf)
-        for body, solid in enumerate(self._solids):
+        for body in self.shown:
+            solid = self._solids[body]
             seen = self._axes[:2] @ rotation_matrices(orientation[:, body])
             places = np.einsum("tij,vj->tvi", seen, solid.vertices)
             places += self.seen(position[:, body])[:, None, :2]
@@ -78,7 +82,7 @@ class Scene:
             for solid, turn, place in zip(self._solids, turns, places, strict=True)
         ]
         outlines, bodies, light = [], [], []
-        for body in self._farthest_first(places, corners, turns):
+        for body in filter(self.shown.__contains__, self._farthest_first(places, corners, turns)):
             for outline, normal in self._visible(self._solids[body], corners[body], turns[body]):
                 outlines.append(outline)
                 bodies.append(body)

@@ -4,65 +4,88 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.path import Path
 
-from blockshake.measurement.motion.joints import find_joints
+from blockshake.measurement.motion.joints import find_joints, find_leaves
 from blockshake.measurement.sensors.markers import point_position
 from blockshake.pages.drawing import BLUE, DARK_GREY, GREEN, ORANGE, RED, new_figure
 from blockshake.pages.scene.bodies import body_colors
 from blockshake.pages.scene.projection import Scene
 
-_VIEWS = {
-    "front": ("front view", "x [m]"),
-    "side": ("side view, from +x", "y [m]"),
-    "far side": ("side view, from -x", "y [m]"),
-    "3d": ("", ""),
-}
 _WIDTH, _HEIGHT = 0.25, 0.2  # m of paper, the height at most
 _BESIDE, _ABOVE = 0.06, 0.03  # m of paper for titles and axes
 _POINT = 0.0254 / 72.0  # m, of type
 _LETTER = 0.62  # of a type's size, the width of a letter
-_LARGEST_TYPE, _SMALLEST_TYPE = 7.0, 2.5  # points
+_LARGEST_TYPE, _SMALLEST_TYPE = 7.0, 3.5  # points
 _OVER_SENSOR = 2.0  # points, from the middle of a face
+_IN_A_ROW = 3  # views; more may stand in two
 
 
 def plot_understood(structure, width=_WIDTH):
     """Figure of a structure at its start from the front, from the side and in parallel projection, to one scale.
 
-    Where a block is hidden from the front and from the side, as in a wall of two leaves, the structure is drawn from
-    the other side too. Blocks have the colour of their material, driven bodies are grey; a name stands on every block
-    that is seen where the block is large enough; diamonds are the joints: pairs nearer than 0.1 mm. In all views but
-    the last, sensors on hidden faces are drawn too. ``width``: of the figure [m of paper].
+    Where a block is hidden from the front and from the side, every leaf of a wall is drawn alone from the side, and a
+    structure whose joints hold all its blocks together from the other side too. Blocks have the colour of their
+    material, driven bodies are grey; a name stands on every block that is seen where the block is large enough;
+    diamonds are the joints: pairs nearer than 0.1 mm. In all views but that in space, sensors on hidden faces are drawn
+    too. ``width``: of the figure [m of paper].
     """
-    scenes = {view: Scene(structure, view) for view in _VIEWS}
-    named = {body for view in ("front", "side") for body in _bared(scenes[view], structure)}
-    if named >= set(np.flatnonzero(~structure.driven)):
-        del scenes["far side"]
-    ends = [scene.extent(structure.position[None], structure.orientation[None]) for scene in scenes.values()]
+    views = _views(structure)
+    ends = [scene.extent(structure.position[None], structure.orientation[None]) for *_, scene in views]
     sizes = np.array([up - low for low, up in ends])
-    wide, high = sizes[:, 0].sum(), sizes[:, 1].max()
-    scale = min((width - _BESIDE) / wide, (_HEIGHT - _ABOVE) / high)  # m of paper, a metre
-    figure = new_figure(scale * high + _ABOVE, width)
-    panels = figure.subplots(1, len(scenes), width_ratios=sizes[:, 0])
+    splits = ((), (2,)) if len(views) > _IN_A_ROW else ((),)
+    scale, split = max((_scale(np.split(sizes, split), width), split) for split in splits)
+    rows = np.split(np.arange(len(views)), split)
+    heights = [scale * sizes[row, 1].max() + _ABOVE for row in rows]
+    figure = new_figure(sum(heights), width)
+    parts = figure.subfigures(len(rows), 1, height_ratios=heights, squeeze=False)[:, 0]
+    panels = []
+    for part, row in zip(parts, rows, strict=True):
+        panels += [*part.subplots(1, len(row), width_ratios=sizes[row, 0], squeeze=False)[0]]
+        panels[row[0]].set_ylabel("z [m]")
     pairs, middles = find_joints(structure)
-    for axes, (view, scene), (low, up) in zip(panels, scenes.items(), ends, strict=True):
+    for axes, (title, label, scene), (low, up) in zip(panels, views, ends, strict=True):
         draw_blocks(axes, scene, structure, structure.position, structure.orientation)
-        if _VIEWS[view][0]:
-            _draw_names(axes, scene, structure, scale)
         room = 0.03 * (up - low).max()
         (left, bottom), (right, top) = low - room, up + room
         axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal", anchor="S")
-        axes.set(title=_VIEWS[view][0], xlabel=_VIEWS[view][1])
+        axes.set(title=title, xlabel=label)
         axes.grid(visible=False)
         axes.spines[["top", "right"]].set_visible(False)
-    for axes, scene in list(zip(panels, scenes.values(), strict=True))[:-1]:
-        at = scene.seen(middles)
+        if not label:
+            axes.set_axis_off()
+            continue
+        _draw_names(axes, scene, structure, scale)
+        at = scene.seen(middles[[scene.shown.issuperset(pair) for pair in pairs.tolist()]])
         axes.plot(at[:, 0], at[:, 1], "D", color=RED, markersize=2.5, label=f"{len(pairs)} joints found")
         _draw_sensors(axes, scene, structure)
-    panels[0].set_ylabel("z [m]")
-    panels[-1].set_axis_off()
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower right")
     blocks = int((~structure.driven).sum())
     figure.suptitle(f"{structure.file.name}: {blocks} blocks", fontsize=8.0)
     return figure
+
+
+def _views(structure):
+    """Title, label of the axis across and `Scene` of every view; of many the one in space is the second."""
+    front, side = (Scene(structure, view) for view in ("front", "side"))
+    sides = [("side view, from +x", side)]
+    if not set(np.flatnonzero(~structure.driven)) <= {*_bared(front, structure), *_bared(side, structure)}:
+        base, leaves = np.flatnonzero(structure.driven), find_leaves(structure)
+        if len(leaves) == 1:
+            sides.append(("side view, from -x", Scene(structure, "far side")))
+        else:
+            sides = [
+                (f"{name}, from +x", Scene(structure, "side", [*base, *leaf]))
+                for name, leaf in leaves.items()
+            ]
+    views = [("front view", "x [m]", front), *((title, "y [m]", scene) for title, scene in sides)]
+    views.insert(1 if len(views) >= _IN_A_ROW else len(views), ("", "", Scene(structure, "3d")))
+    return views
+
+
+def _scale(rows, width):
+    """Metres of paper a metre of views, whose sizes [m] are given row by row."""
+    wide = max(row[:, 0].sum() for row in rows)
+    high = sum(row[:, 1].max() for row in rows)
+    return min((width - _BESIDE) / wide, (_HEIGHT - len(rows) * _ABOVE) / high)
 
 
 def draw_blocks(axes, scene, structure, position, orientation):
@@ -125,6 +148,7 @@ def _halved(name):
 def _draw_sensors(axes, scene, structure):
     """Circles for markers, triangles for accelerometers, lines for displacement transducers."""
     pose = structure.position, structure.orientation
+    seen = {structure.body_names[body] for body in scene.shown}
     for sensors, label, style in (
         (structure.file.markers, "markers", {"marker": "o", "color": BLUE, "markersize": 2.0}),
         (
@@ -133,11 +157,11 @@ def _draw_sensors(axes, scene, structure):
             {"marker": "^", "color": ORANGE, "markersize": 3.2},
         ),
     ):
-        if sensors:
+        if sensors := [one for one in sensors if one.body in seen]:
             at = scene.seen(point_position(structure, sensors, *pose))
             axes.plot(at[:, 0], at[:, 1], linestyle="none", markeredgewidth=0.0, label=label, **style)
     transducers = structure.file.displacement_transducers
-    if transducers:
+    if transducers := [one for one in transducers if {one.body, one.reference} <= seen]:
         ends, anchors = (
             scene.seen(point_position(structure, points, *pose))
             for points in (transducers, [one.anchor for one in transducers])

@@ -6,7 +6,7 @@ import xarray as xr
 from blockshake.dynamics.system import Status
 from blockshake.errors import InputError
 from blockshake.measurement.motion.compared_curves import SAME_TIME
-from blockshake.simulation.run_histories import JOINT_FIGURES
+from blockshake.simulation.run_histories import BLOW_FIGURES, JOINT_FIGURES
 from blockshake.store import load_made
 from blockshake.study.sampling.distributions import parameter_unit
 
@@ -39,11 +39,11 @@ def run_as_sample(run, sample, values, slab_marker):
         Along ``sample``: ``marker_displacement(sample, time, marker, axis)`` and ``position(sample, time, body, axis)``
         [m], inertial frame; ``orientation(sample, time, body, quaternion)``; ``status`` and ``reason``;
         ``end_time`` [s]; ``peak`` and ``residual(sample, frame, marker)`` [m], along x;
-        ``peak_rotation(sample, body)`` [rad]; the run's `joint_figures`, ``(sample, joint)``;
+        ``peak_rotation(sample, body)`` [rad]; the run's `joint_figures`, ``(sample, joint)`` or ``(sample)``;
         ``parameter_value(sample, parameter)``; and the run's figures of its computation, ``energy_residual`` and
         ``numerics_*``. Attributes: the others of the run, and ``slab_marker``.
     """
-    kept = run[["marker_displacement", "position", "orientation", *JOINT_FIGURES]]
+    kept = run[["marker_displacement", "position", "orientation", *JOINT_FIGURES, *BLOW_FIGURES]]
     kept = kept.assign(peak_rotation=_peak_rotation(run["orientation"]))
     kept = kept.transpose("time", "marker", "body", "joint", "axis", "quaternion")
     index = xr.DataArray([sample], dims="sample", attrs={"long_name": "row of the sample in its design"})

@@ -63,7 +63,7 @@ def envelope(ensemble, largest_drift, displacement=None):
         ``marker_envelope(frame, bound, time, marker, axis)`` [m]: the smallest and the largest displacement at each
         time, coordinate ``bound`` lower and upper; ``marker_displacement(frame, quantile, time, marker, axis)`` [m];
         ``peak`` and ``residual(quantile, frame, marker)`` [m]; ``peak_rotation(quantile, body)`` [rad];
-        `joint_figures` ``(quantile, joint)``;
+        `joint_figures` of joints ``(quantile, joint)``;
         ``contributing(time)``: samples with a value at that time; ``collapse_probability`` and
         ``drift_probability(marker)`` [1]. NaN where no sample has a value. The statistics of single numbers have their
         95 % limits beside them, ``NAME_interval(bound, ...)``, those of quantiles NaN of too few samples

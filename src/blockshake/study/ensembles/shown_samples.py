@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 from scipy.spatial.transform import Rotation
 
+from blockshake.dynamics.system import FALLEN
 from blockshake.measurement.sensors.markers import unread_directions
 from blockshake.store import load_made
 from blockshake.study.ensembles.ensemble import POSES, join_batches
@@ -16,7 +17,7 @@ def shown_of_case(batches):
     """`shown_samples` of the samples in these files, of which the histories of those shown alone are read."""
     figures = join_batches(batches, (*POSES, "marker_displacement"))
     counted = counted_samples(figures)
-    wanted = counted["sample"].values[list(_words(_peaks(counted)))]
+    wanted = counted["sample"].values[list(_words(counted))]
     if not wanted.size:  # of any sample it comes out that none is shown
         wanted = figures["sample"].values[:1]
     parts = []
@@ -30,7 +31,7 @@ def shown_of_case(batches):
 
 
 def shown_samples(ensemble):
-    """Motion of the sample of the median peak and of that of the largest one, relative to the slab.
+    """Motion of the median sample and of the worst one, relative to the slab.
 
     Parameters
     ----------
@@ -49,12 +50,12 @@ def shown_samples(ensemble):
 
     Notes
     -----
-    Of an even number of samples the median one is that below the middle.
+    Samples are ranked by their peak, those that fell above all others; of an even number the median one is that below
+    the middle.
     """
     counted = counted_samples(ensemble)
-    peak = _peaks(counted)
-    words = _words(peak)
-    rows = sorted(words, reverse=True, key=lambda row: words[row])  # the median one first
+    peak, words = _peaks(counted), _words(counted)
+    rows = list(words)
     chosen = counted.isel(sample=rows)
     moved = [_motion(chosen.isel(sample=place), ensemble.attrs["slab_marker"]) for place in range(len(rows))]
     time = ensemble["time"].isel(time=_frames(ensemble["time"].to_numpy()))
@@ -80,13 +81,12 @@ def _peaks(counted):
     return counted["peak"].sel(frame="slab", drop=True).max("marker")
 
 
-def _words(peak):
-    """Why samples are shown, by their place."""
-    order, words = np.argsort(peak.to_numpy(), kind="stable"), {}
-    if len(order):
-        words[order[-1]] = "largest peak"
-        words[order[(len(order) - 1) // 2]] = "median peak" if len(order) > 1 else "the only sample"
-    return words
+def _words(counted):
+    """Why samples are shown, by their place: the median one first."""
+    order = np.lexsort((_peaks(counted).to_numpy(), np.isin(counted["status"].values, FALLEN)))
+    if len(order) < 2:
+        return dict.fromkeys(order, "the only sample")
+    return {order[(len(order) - 1) // 2]: "median", order[-1]: "worst"}
 
 
 def shown_markers(test, times):

@@ -52,6 +52,7 @@ def answer(content):
         if np.isfinite(one["median"])
     ]
     for title, key, sentences in (
+        ("Blows between blocks that stand apart", "blows", _blows(found)),
         ("Why the models differ" if not compared else "Models and tests beside each other", "beside", said),
         ("Not known", "not-known", unknown(content)[:MOST]),
         ("Next", "next", next_steps(content, found)[:MOST]),
@@ -119,10 +120,12 @@ def _verdict(content, found):
 
     words = []
     if names := sides["stand"]:
-        upper = max(one.limits[1] for name in names for one in found[name].values())
+        every = [one for name in names for one in found[name].values()]
+        upper, fewest = max(one.limits[1] for one in every), min(one.counted for one in every)
         words.append(
             f"{named(names, 'stand')}: none of {count_words(runs(names), 'run')} by {_by(found, names)} collapses; "
-            f"its probability is below {_whole(upper)} % (limit of 95 %)"
+            f"from {count_words(fewest, 'run')} of a case by a model, a collapse may still be as likely as "
+            f"{_whole(upper)} % (limit of 95 %)"
         )
     for name in sides["may"]:
         by = [
@@ -178,7 +181,8 @@ def _facts(content, found, shown):
         (
             "Least margin against overturning",
             f"{_range(ended, 'margin', _whole)} %" if near.over else MISSING,
-            f"above {near.over}; {under}; medians{_ends(ended, 'margin')}; at rest 100 %, weight over the edge 0 %",
+            f"above {near.over}; {_by_leaf(ended)}{under}; medians{_ends(ended, 'margin')}; at rest 100 %, weight "
+            "over the edge 0 %",
         ),
         (
             "Samples that collapse",
@@ -189,8 +193,43 @@ def _facts(content, found, shown):
 
 
 def _range(ended, name, show):
-    values = [getattr(one, name) for one in ended.values() if np.isfinite(getattr(one, name))]
+    return _from_to([value for one in ended.values() if np.isfinite(value := getattr(one, name))], show)
+
+
+def _from_to(values, show):
+    """Smallest and largest of some values, one where they print alike."""
     return " to ".join(dict.fromkeys(show(end) for end in (min(values), max(values))))
+
+
+def _by_leaf(ended):
+    """Margins of the leaves of a wall that has several, in words."""
+    told = []
+    for name in next(iter(ended.values())).leaves:
+        ends = [one.leaves[name] for one in ended.values() if np.isfinite(one.leaves[name])]
+        told += [f"{name} {_from_to(ends, _whole)} %"] if ends else []
+    return f"{', '.join(told)}; " if 1 < len(told) <= MOST else ""
+
+
+def _blows(found):
+    """How often blocks that stand apart strike each other and how fast, a sentence a case, and what is not told."""
+    said = []
+    for name, ended in found.items():
+        if not any(one.struck for one in ended.values()):
+            continue
+        words = [
+            f"in {share_words(one.struck, one.counted)} samples by {model_label(model)}, at most "
+            f"{count_words(one.blows, 'blow')} in one, the fastest at {one.blow:.2f} m/s ({one.pair})"
+            if one.struck
+            else f"none by {model_label(model)}"
+            for model, one in ended.items()
+        ]
+        said.append(f"{name}: {'; '.join(words)}.")
+    if not said:
+        apart = any(len(one.leaves) > 1 for ended in found.values() for one in ended.values())
+        return ["None in any run that counts."] if apart else []
+    said[MOST:] = []
+    said[-1] += " The force of a blow is not told: it depends on how edges crush, which no model has."
+    return said
 
 
 def _ends(ended, name):

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from blockshake.measurement.motion.joints import find_joints, find_leaves
 from blockshake.pages.rows import face_markers
 from blockshake.simulation.rocking import plastic_shares
 from blockshake.statistics.intervals import SURE_FROM, share_interval
@@ -34,6 +35,12 @@ class Outcome(NamedTuple):
         Smallest median margin against overturning of any joint [1]; NaN where no joint has one.
     over : str
         The joint.
+    leaves : dict of str to float
+        The same of every leaf of `find_leaves` [1].
+    struck, blows : int
+        Samples with blows of `pounding`, and the most in a sample.
+    blow, pair : float, str
+        Velocity of the fastest of all [m/s], and its blocks.
     """
 
     collapsed: int
@@ -48,6 +55,11 @@ class Outcome(NamedTuple):
     end: float
     margin: float
     over: str
+    leaves: dict
+    struck: int
+    blows: int
+    blow: float
+    pair: str
 
     @property
     def share(self):
@@ -87,13 +99,16 @@ def _outcome(case, response):
     at = response.envelope.sel(frame="slab", quantile=0.5, marker=list(blocks.values()))
     farthest = int(at["peak"].argmax("marker"))
     block, marker = list(blocks.items())[farthest]
-    peaks = counted_samples(response.samples)["peak"].sel(frame="slab", marker=marker)
+    counted = counted_samples(response.samples)
+    peaks = counted["peak"].sel(frame="slab", marker=marker)
     peak, curve = float(at["peak"][farthest]), response.envelope["marker_displacement"]
     late = curve.sel(frame="slab", quantile=0.5, marker=marker, axis="x")
     late = late.sel(time=slice(float(late["time"][-1]) - _LAST, None))
     rests = float(late.max() - late.min()) <= max(STILL, _RESTLESS * peak)
     margins = at["joint_margin"].dropna("joint")
     least = int(margins.argmin("joint")) if margins.size else None
+    upper, every = find_joints(case.structure)[0][:, 1], at["joint_margin"].to_numpy()
+    blows, velocity = counted["blows"].to_numpy(), counted["blow_velocity"].to_numpy()
     return Outcome(
         collapsed=ended.collapsed + ended.falling,
         falling=ended.falling,
@@ -107,6 +122,14 @@ def _outcome(case, response):
         end=abs(float(at["residual"][farthest])) if rests else np.nan,
         margin=np.nan if least is None else float(margins[least]),
         over="" if least is None else str(margins["joint"].values[least]),
+        leaves={
+            name: float(np.min(every[np.isin(upper, leaf) & np.isfinite(every)], initial=np.inf))
+            for name, leaf in find_leaves(case.structure).items()
+        },
+        struck=int((blows > 0).sum()),
+        blows=int(blows.max()),
+        blow=float(velocity.max()),
+        pair=str(counted["blow_pair"].values[velocity.argmax()]),
     )
 
 

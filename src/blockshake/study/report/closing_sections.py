@@ -38,10 +38,6 @@ def origin(content):
         ),
         digests_table(content.digests),
         *command_blocks("blockshake study FILE" + (f" --case {content.only}" if content.only else "")),
-        Text(
-            "Command that shows which job made each result, with its code, parameters and times, in a page of its own:"
-        ),
-        Listing("Provenance", "snakemake --report provenance.html --configfile FILE"),
         Listing("Configuration used, the content of FILE", configuration),
     )
     return Section("Origin", "origin", blocks)

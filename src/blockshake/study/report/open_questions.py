@@ -137,8 +137,8 @@ def unknown(content):
         )
     if chaotic := _chaotic(cases):
         sentences.append(
-            f"Single runs after {'; '.join(chaotic)}: from then on half the time step tells a run from its twin. "
-            "Medians and bands remain."
+            f"How a single run goes on: {'; '.join(chaotic)}. From then on half the time step leads elsewhere; medians "
+            "and bands remain."
         )
     unanswered = [
         parameter_label(name)
@@ -178,10 +178,10 @@ def _chaotic(cases):
     for case in cases:
         horizons = case.differences["horizon"]
         parted = [
-            f"{model_label(model)} {number(horizons.sel(model=model))} s"
+            f"{number(horizons.sel(model=model))} s by {model_label(model)}"
             for model in horizons["model"].values
             if float(horizons.sel(model=model)) < case.settings["duration"]
         ]
         if parted:
-            by_case.append(f"{case.name}, {', '.join(parted)}")
+            by_case.append(f"{case.name} after {listed(parted)}")
     return by_case

@@ -29,13 +29,16 @@ def figures(content):
     """The figures behind the answer: probabilities and peaks with their limits, and the cases."""
     responses = [one for case in content.cases.values() for one in case.responses.values()]
     ended = count_outcomes(np.concatenate([one.samples["status"] for one in responses]))
+    models = [
+        f"{model_label(model)} in steps of {given(one['time_step'])} s"
+        for model, one in content.study["models"].items()
+    ]
     runs = (
-        f"{count_words(len(content.cases), 'case')}, {count_words(len(content.study['models']), 'model')} "
-        f"({', '.join(model_label(model) for model in content.study['models'])}), {sum(ended)} runs: "
-        f"{ended.completed} completed, {ended.collapsed} collapsed, {ended.falling} still falling "
-        f"when the window ended, {ended.failed} failed."
+        f"{count_words(len(content.cases), 'case')} by {'; '.join(models)}; {sum(ended)} runs: {ended.completed} "
+        f"completed, {ended.collapsed} collapsed, {ended.falling} still falling when the window ended, {ended.failed} "
+        "failed."
     )
-    blocks = (Text(runs), probability_table(content), _cases_table(content), *failures(content))
+    blocks = (Text(runs), probability_table(content), *failures(content))
     return Section("Cases in figures", "figures", blocks)
 
 
@@ -116,33 +119,6 @@ def _with_limits(dataset, name, show):
 
 def _thousandths(value):
     return f"{1e3 * float(value):.1f}"
-
-
-def _cases_table(content):
-    """Simulated cases: structure, motion, scale, peak acceleration, window, samples by model and their ends."""
-    rows = []
-    for case in content.cases.values():
-        for model, response in case.responses.items():
-            rows.append((
-                case.name, case.motion, given(case.settings["scale"]), number(content.peak_acceleration(case)),
-                given(case.settings["duration"]), model_label(model),
-                given(content.study["models"][model]["time_step"]), str(response.samples.sizes["sample"]),
-                " / ".join(map(str, count_outcomes(response.samples["status"]))),
-            ))  # fmt: skip
-    header = (
-        "Case", "Motion", "Scale", f"Peak acceleration [m/s{SQUARED}]", "Window [s]", "Model", "Time step [s]",
-        "Samples", "completed / collapsed / still falling / failed",
-    )  # fmt: skip
-    shared = [
-        f"{model_label(model)}: {', '.join(f'{name} {given(value)}' for name, value in settings['parameters'].items())}"
-        for model, settings in content.study["models"].items()
-        if settings.get("parameters")
-    ]
-    return Table(
-        "Cases and models. The peak acceleration is the scaled motion's; the window is counted from its start."
-        + (f" In all samples of {'; '.join(shared)}." if shared else ""),
-        header, tuple(rows), "llrrrlrrr",
-    )  # fmt: skip
 
 
 def structures(content):

@@ -33,11 +33,11 @@ def responses(content):
         ),
     ]
     for case in content.cases.values():
-        blocks += _response(case, content.motions[case.motion])
+        blocks += _response(case)
     return Section("Displacement of the blocks", "responses", tuple(blocks))
 
 
-def _response(case, motion):
+def _response(case):
     markers = face_markers(case.structure)
     envelopes = {model: one.envelope for model, one in case.responses.items()}
     blocks, marked = int((~case.structure.driven).sum()), len(markers)
@@ -56,7 +56,6 @@ def _response(case, motion):
             f"{case.motion}, scale {given(case.settings['scale'])}, first {given(case.settings['duration'])} s."
             + _noise(case)
         ),
-        *early_end(case, motion),
         *band_remarks(case, markers.values()),
         figure("slab", f"{case.name}: displacement relative to the slab's marker, {every}."),
         *_moving(case),
@@ -76,8 +75,8 @@ def _moving(case):
     return [
         Figure(
             f"{case.name}: blocks of samples by every model{markers}. Displacement is relative to the slab's marker. "
-            f"In print: the sample of the median peak of all markers when a block is farthest, magnified {size}. "
-            "On a screen: the samples of the median and of the largest peak of all markers, moving in real time; the "
+            f"In print: the median sample by the peak of all markers when a block is farthest, magnified {size}. "
+            "On a screen: the median sample and the worst, fallen or of the largest peak, moving in real time; the "
             "displacement of each point is multiplied, so that blocks look bent where the magnification is large.",
             svg_of(plot_still, case),
             interactive=moving_samples(case),
@@ -91,19 +90,6 @@ def _noise(case):
         return " No measured test is compared with the samples."
     word = case.curve_word if case.synthetic else "measured curve"
     return f" Marker noise of the {word}: {given(1e3 * case.marker_noise)} mm (standard deviation)."
-
-
-def early_end(case, motion):
-    """A remark where the window ends within the motion."""
-    if case.settings["duration"] >= motion.attrs["duration"]:
-        return []
-    return [
-        Text(
-            f"The window ends before the motion, which lasts {given(motion.attrs['duration'])} s (strong until "
-            f"{number(motion.attrs['significant_end'])} s): the residuals below are displacements at the end of the "
-            "window and need not be final."
-        )
-    ]
 
 
 def band_remarks(case, markers):

@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 
 from blockshake.errors import InputError
-from blockshake.files import read_cells
 from blockshake.tables.numbers import plain_number
+from blockshake.tables.table_file import csv_rows
 
 _ROUNDING = 1e-6  # of entries typed with six digits
 _SMALLEST_EIGENVALUE = 1e-6  # below it Cholesky's factor is noise
@@ -33,7 +33,7 @@ def load_correlation(path):
         Missing file, not square, names that differ, an entry that is no number, or no correlation
         matrix (see `check_correlation`).
     """
-    rows = [row for row in read_cells(path) if any(row)]
+    rows = csv_rows(path)
     if len(rows) < 2:
         raise InputError(path, "", "expected a square table with names in the header and in the first column")
     names = rows[0][1:]

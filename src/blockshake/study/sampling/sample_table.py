@@ -4,8 +4,9 @@ import numpy as np
 import pandas as pd
 
 from blockshake.errors import InputError
-from blockshake.files import read_cells, write_text
+from blockshake.files import write_text
 from blockshake.tables.numbers import plain_number
+from blockshake.tables.table_file import csv_rows
 
 
 def write_design(path, values):
@@ -33,7 +34,7 @@ def load_design(path):
     InputError
         Missing file, no rows, a name twice, a row of another length, or an entry that is no finite number.
     """
-    rows = [row for row in read_cells(path) if row]
+    rows = csv_rows(path)
     if len(rows) < 2:
         raise InputError(path, "", "expected a header of parameter names and one row a sample")
     names = rows[0]
