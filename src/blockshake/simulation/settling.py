@@ -7,19 +7,20 @@ from blockshake.dynamics.motion import PITCH
 from blockshake.geometry.rotations import rotation_matrices
 
 _STRONG = 0.02  # of gravity: what is weaker moves no body that stands
+_PITCHED = 0.002  # rad: a fifth of the least move, which a body that follows makes too
 _LEAST = 0.01  # of a body's largest extent, by which one of its vertices moves
 
 
 def quiet_until(structure, motion):
     """Time until which the ground is nearly at rest [s]; zero if it always is.
 
-    Its acceleration, 1 m from the axis of a pitch, is below 2 % of gravity, and so is what a pitch turns of gravity.
+    Its acceleration, 1 m from the axis of a pitch, is below 2 % of gravity, and it has pitched by less than 0.002 rad.
     """
     breaks = motion.table.breaks
     strength = np.linalg.norm(motion.evaluate(breaks, 2), axis=1)
     pitch = motion.evaluate(breaks)[:, PITCH]
     moves = strength > _STRONG * np.linalg.norm(structure.file.gravity)
-    moves |= np.abs(pitch - pitch[0]) > _STRONG
+    moves |= np.abs(pitch - pitch[0]) > _PITCHED
     return max(float(breaks[max(np.argmax(moves) - 1, 0)]), 0.0)
 
 
