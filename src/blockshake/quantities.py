@@ -44,6 +44,7 @@ PHYSICAL = (
     Quantity(
         "bodies.BODY.mass_offset", "m", "mass centre seen from the shape's centroid, body frame", "docs/method.md"
     ),
+    Quantity("bodies.BODY.inertia", "kg m2", "inertia about the mass centre, body frame", "docs/method.md"),
     Quantity("bodies.BODY.position", "m", "shape's centroid at the start", "structure file"),
     Quantity("bodies.BODY.orientation", "1", "unit quaternion w, x, y, z at the start", "structure file"),
     Quantity("bodies.BODY.velocity", "m/s", "velocity at the start", "structure file"),

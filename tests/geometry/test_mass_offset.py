@@ -83,3 +83,45 @@ def test_a_driven_body_has_none(make_mapping, make_structure):
     }
     with pytest.raises(InputError, match=r"bodies.slab.mass_offset: expected none of a driven body"):
         make_structure([slab], slab=False)
+
+
+@pytest.mark.parametrize(
+    ("elements", "tensor"),
+    [
+        ([9e3, 4e3, 8e3], np.diag([9e3, 4e3, 8e3])),
+        ([9e3, 4e3, 8e3, 100.0, -200.0, 300.0], [[9e3, 100, -200], [100, 4e3, 300], [-200, 300, 8e3]]),
+    ],
+)
+def test_a_stated_inertia_is_that_about_the_mass_centre(elements, tensor, make_structure):
+    structure = _block(make_structure, (0.1, 0.0, 0.0), inertia=elements)
+    np.testing.assert_array_equal(structure.inertia[1], tensor)
+    twice = structure.with_parameters({"bodies.b.inertia": [2e3, 2e3, 2e3]})
+    np.testing.assert_array_equal(twice.inertia[1], 2e3 * np.eye(3))
+
+
+def test_a_structure_without_a_stated_inertia_has_its_old_digest(make_structure):
+    assert "inertia" not in _block(make_structure, (0.0, 0.0, 0.0)).file.model_dump_json()
+
+
+@pytest.mark.parametrize(
+    ("elements", "expected"),
+    [
+        ([1e3, 1e3, 2.1e3], "none above the sum of the others"),
+        ([1e3, 1e3, -1.0], "positive principal moments"),
+        ([1e3, 1e3, 1e3, 0.0, 1.1e3, 0.0], "positive principal moments"),
+        ([1e8, 1e8, 1e8], "at the farthest vertex"),
+        ([1e3, 1e3], "three or six numbers"),
+    ],
+)
+def test_an_inertia_of_no_mass_is_refused(elements, expected, make_structure):
+    """A lamina has the sum of two moments as the third one; a product beyond the moments has a negative root."""
+    with pytest.raises(InputError, match=rf"bodies.b.inertia: .*{expected}"):
+        _block(make_structure, (0.0, 0.0, 0.0), inertia=elements)
+
+
+def test_a_driven_body_has_no_inertia(make_structure):
+    slab = {
+        "name": "slab", "shape": "slab", "position": [0.0, 0.0, -0.1], "driven": True, "inertia": [1e3] * 3,
+    }  # fmt: skip
+    with pytest.raises(InputError, match=r"bodies.slab.inertia: expected none of a driven body"):
+        make_structure([slab], slab=False)

@@ -22,7 +22,7 @@ STRUCTURE = {
         {"name": "slab", "shape": "slab", "material": "plate", "position": [0.0, 0.0, -0.1], "driven": True},
         {"name": "low", "shape": "block", "material": "granite", "position": [0.0, 0.0, 0.5],
          "orientation": [1.0, 0.0, 0.0, 0.0], "velocity": [0.0, 0.0, 0.0], "angular_velocity": [0.0, 0.0, 0.0],
-         "mass_offset": [0.0, 0.0, 0.0], "density": 2600.0},
+         "mass_offset": [0.0, 0.0, 0.0], "inertia": [380.0, 212.0, 281.0], "density": 2600.0},
         {"name": "high", "shape": "block", "material": "granite", "position": [0.0, 0.0, 1.5]},
     ],
     "friction": [
@@ -277,6 +277,7 @@ ROWS = {
         ("bodies.1.driven", "yes", "valid boolean"),
         ("bodies.1.density", 0.0, _AT_LEAST),
         ("bodies.1.mass_offset", [0.0, 0.0, 0.6], "mass"),
+        ("bodies.1.inertia", [380.0, 212.0, 900.0], "none above the sum of the others"),
         ("friction.0.pair", ["granite", "ice"], "expected pairs of this file's materials, not 'ice'"),
         ("friction.0.pair", ["plate", "granite"], "expected every pair once"),
         ("friction", [], "missing; expected a coefficient for this pair"),

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from blockshake.validation import Finite, Fraction, NotNegative, Positive, Strict
 
@@ -18,6 +18,15 @@ Velocities = tuple[*[Annotated[Finite, Field(ge=-1e4, le=1e4)]] * 3]
 AngularVelocities = tuple[*[Annotated[Finite, Field(ge=-1e4, le=1e4)]] * 3]
 Accelerations = tuple[*[Annotated[Finite, Field(ge=-1e4, le=1e4)]] * 3]
 Name = Annotated[str, Field(min_length=1, pattern=r"^[^\s./]+$")]
+
+
+def _three_or_six(elements):
+    if len(elements) not in (3, 6):
+        raise ValueError("expected three or six numbers")
+    return elements
+
+
+Inertia = Annotated[tuple[Finite, ...], AfterValidator(_three_or_six)]
 
 
 class Material(Strict):
@@ -75,6 +84,12 @@ class Body(Strict):
     density: Density | None = Field(None, description="of this body instead of its material's [kg/m3]")
     mass_offset: Vector = Field(
         (0.0, 0.0, 0.0), description="mass centre seen from the centroid of the shape, body frame [m]"
+    )
+    inertia: Inertia | None = Field(
+        None,
+        description="about the mass centre, body frame: elements xx, yy, zz of the tensor and, unless 0, xy, xz, yz; "
+        "none: that of the shape at an even density [kg m2]",
+        exclude_if=lambda given: given is None,  # a structure without any keeps its digest
     )
 
 

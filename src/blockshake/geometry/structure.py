@@ -11,7 +11,7 @@ import trimesh
 
 from blockshake.errors import InputError
 from blockshake.files import AnyPath, content_digest, load_yaml, named_file
-from blockshake.geometry.mass_offset import check_offset, offset_inertia, offset_solid
+from blockshake.geometry.mass_offset import check_offset, offset_inertia, offset_solid, stated_inertia
 from blockshake.geometry.meshes.mesh_file import read_mesh
 from blockshake.geometry.overlap import depths_of_pairs, near_pairs
 from blockshake.geometry.polyhedron import (
@@ -231,7 +231,7 @@ def build_structure(mapping, source, folder, known=None):
         solids[name] = solid if shape == before else _solid(name, shape, source, folder)
     for body in file.bodies:
         check_offset(body, solids[body.shape], source)
-    mass, inertia = _masses(file, solids)
+    mass, inertia = _masses(file, solids, source)
     centroid = np.array([body.position for body in file.bodies])
     orientation = unit_quaternions(file, source)
     check_transducers(file, orientation, source)
@@ -269,12 +269,16 @@ def _solid(name, shape, source, folder):
     return Solid(vertices, faces, polyhedron, mass_properties(vertices, faces))
 
 
-def _masses(file, solids):
+def _masses(file, solids, source):
     density = np.array([body.density or file.materials[body.material].density for body in file.bodies])
     properties = [solids[body.shape].properties for body in file.bodies]
     mass = density * np.array([item.volume for item in properties])
     inertia = [
         offset_inertia(kilograms, unit * item.inertia, np.array(body.mass_offset))
+        if body.inertia is None
+        else stated_inertia(
+            body, kilograms, offset_solid(solids[body.shape], np.array(body.mass_offset)), source
+        )
         for kilograms, unit, item, body in zip(mass, density, properties, file.bodies, strict=True)
     ]
     return mass, np.array(inertia)

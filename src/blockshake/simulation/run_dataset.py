@@ -91,6 +91,7 @@ def effective_parameters(structure, model, numerical):
     acted |= {
         f"bodies.{body.name}.mass_offset": list(body.mass_offset) for body in file.bodies if not body.driven
     }
+    acted |= {f"bodies.{body.name}.inertia": list(body.inertia) for body in file.bodies if body.inertia}
     groups = {f"materials.{name}": material.model_dump() for name, material in file.materials.items()}
     for entry in file.friction:
         groups[f"friction.{'.'.join(entry.pair)}"] = entry.model_dump(exclude={"pair", "coefficient"})

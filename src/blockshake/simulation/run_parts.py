@@ -82,6 +82,17 @@ class RunParts:
         """`residual_of` the whole run."""
         return residual_of([part["energy"][0] for part in self._read("energy")])
 
+    def row_at(self, time):
+        """The last row not after a time [s], `Rows` of one."""
+        found = None
+        for part in self._read("rows"):
+            rows = Rows(*part["rows"])
+            before = int(np.searchsorted(rows.time, time, "right"))
+            found = rows.at(slice(before - 1, before)) if before else found
+            if before < len(rows.time):
+                return found
+        return found
+
     def histories(self):
         """Yield the Datasets of `run_dataset`, which follow each other in time, the first of them without a time."""
         start, done = None, 0

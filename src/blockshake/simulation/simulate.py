@@ -27,6 +27,7 @@ from blockshake.simulation.limits import check_limits, has_fine_record
 from blockshake.simulation.models import model_of, split_parameters
 from blockshake.simulation.run_dataset import add_readings, effective_parameters
 from blockshake.simulation.run_parts import RunParts, reduced, write_run
+from blockshake.simulation.settling import quiet_until, settling
 from blockshake.solvers.checkpoint import KeptRows
 from blockshake.sources import kernel_sources, module_sources, source_digest
 
@@ -92,7 +93,7 @@ def simulate(
     if times.size and parts.transducers:
         lengthened = np.concatenate([*parts.lengthenings()])
         add_readings(run, "transducer_displacement", times, lengthened, parts.transducers)
-    run.attrs = of.attributes(trajectory, parts.energy_residual())
+    run.attrs = of.attributes(trajectory, parts)
     return run
 
 
@@ -114,7 +115,7 @@ def simulate_to_file(
     kept = KeptRows(f"{checkpoint}.rows", lambda rows: reduced(of.structure, rows, of.coarse, of.fine))
     trajectory = of.solve(checkpoint=checkpoint, kept=kept)
     parts = RunParts(of.structure, of.coarse, of.fine, trajectory, kept)
-    write_run(path, parts, of.attributes(trajectory, parts.energy_residual()))
+    write_run(path, parts, of.attributes(trajectory, parts))
     checkpoint.unlink(missing_ok=True)
     kept.remove()
 
@@ -144,9 +145,9 @@ class _SetUp(NamedTuple):
             self.structure, self.motion, self.numerical, times, self.time_step, **options
         )
 
-    def attributes(self, trajectory, residual):
-        """Attributes of the run file, from how the run ended and its `energy_residual`."""
-        file, motion = self.structure.file, self.motion
+    def attributes(self, trajectory, parts):
+        """Attributes of the run file, from how the run ended and its `RunParts`."""
+        file, motion, residual = self.structure.file, self.motion, parts.energy_residual()
         status, reason = trajectory.status, trajectory.reason
         if status is Status.COMPLETED:
             last = (
@@ -160,6 +161,10 @@ class _SetUp(NamedTuple):
         if status in FINISHED and residual > _WORST_RESIDUAL:
             reason = f"the energy audit misses {residual:.0%} of the energy in play: take a smaller time step; {reason}"
             status, reason = Status.NOT_CONVERGED, reason.removesuffix("; ")
+        at_rest = parts.row_at(quiet_until(self.structure, motion))
+        settled = settling(self.structure, at_rest.position[0], at_rest.orientation[0])
+        if status in FINISHED and settled:
+            reason = "; ".join(filter(None, (reason, settled)))
         return {
             "Conventions": "CF-1.11",
             "title": f"{file.name} under {motion.name}, {self.model}",
@@ -168,6 +173,7 @@ class _SetUp(NamedTuple):
             "motion": motion.name,
             "status": str(status),
             "reason": reason,
+            "settled": settled,
             "end_time": trajectory.end_time,
             "energy_residual": residual,
             "time_step": self.time_step,

@@ -4,13 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from made_flights import MASS, campaign, drag
+from made_flights import MASS, SIDE, campaign, drag
 
-from blockshake.diagnosis.flight.decide import decide_flights
+import blockshake.diagnosis.flight.decide as decide_module
+from blockshake.diagnosis.flight.causes import CAUSES
+from blockshake.diagnosis.flight.decide import _otherwise_at_first, decide_flights
+from blockshake.diagnosis.flight.evidence import explain, flight_rows
 from blockshake.diagnosis.flight.gain import flight_gain
 from blockshake.diagnosis.flight.replay import FlightModel, replay, start_arc
 from blockshake.forces.flight.arcs import find_arcs
 from blockshake.forces.flight.impacts import find_impacts, summary
+from blockshake.forces.flight.inertia import seen_ratios
 
 OPEN, SEALED = range(16), range(16, 24)
 
@@ -120,3 +124,45 @@ def test_a_large_drag_is_not_taken_for_broken_flights():
     assert decision.parts[0].causes[0].name == "drag"
     assert decision.parts[0].causes[0].parameters["rate"].estimate == pytest.approx(2.0, rel=0.1)
     assert evidence.attrs["left_out"] <= 2
+
+
+EVEN = MASS * SIDE**2 / 6.0  # kg m2, of the cube
+
+
+@pytest.mark.parametrize("moments", [(1.0, 1.0, 1.0), (1.0, 1.25, 0.9), (1.3, 1.3, 1.3)])
+def test_flights_tell_the_ratios_of_the_moments_of_inertia_and_not_their_size(moments):
+    """Euler's equations have the same spins where all moments are larger by a factor."""
+    posed = campaign(OPEN, {"body": {"inertia": [EVEN * one for one in moments]}})
+    ratios, deviations = seen_ratios(posed, find_arcs(posed)[0])
+    assert deviations.max() < 0.05
+    away = ratios - np.log(np.array(moments[1:]) / moments[0])
+    assert np.abs(away / deviations).max() < 4.0
+
+
+def test_flights_in_a_plane_tell_no_moment_of_inertia(clean):
+    arcs = [replace(arc, axes=np.array([0, 2])) for arc in find_arcs(clean)[0]]
+    assert seen_ratios(clean, arcs) is None
+
+
+def test_paths_are_nearer_with_the_inertia_that_the_body_has():
+    posed = campaign(range(8), {"body": {"inertia": [1.3 * EVEN] * 3}})
+    arcs, _ = find_arcs(posed)
+    tests = [(test, arc) for test in posed.tests if (arc := start_arc(test, arcs))]
+
+    def error(size):
+        model = FlightModel(0.2, 0.4, inertia=(np.log(size),) * 3)
+        return np.mean([np.nanmean(replay(posed, *one, model).middle) for one in tests])
+
+    assert error(1.3) < 0.7 * min(error(1.0), error(1.6))
+
+
+def test_a_drag_in_first_flights_alone_is_told(clean, monkeypatch):
+    monkeypatch.setattr(decide_module, "_FEWEST_FLIGHTS", 10)
+    first = {}
+    dragged, _ = find_arcs(campaign(OPEN, {"external_forces": drag(0.6 * MASS)}))
+    for arc in dragged:
+        first.setdefault(arc.test, arc)
+    cause = next(cause for cause in CAUSES if cause.name == "drag")
+    for arcs, told in (([*first.values(), *find_arcs(clean)[0]], True), (dragged, False)):
+        lines = list(_otherwise_at_first(clean, arcs, [explain(flight_rows(clean, arcs), cause)]))
+        assert bool(lines) == told

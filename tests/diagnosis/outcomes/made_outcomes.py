@@ -64,6 +64,7 @@ def made_campaign(folder, truth, tests=120, seed=1):
     runs = xr.Dataset(
         {
             "lean": (("test", "draw"), lean[:, :-1]),
+            "settled": (("test", "draw"), np.zeros(lean[:, :-1].shape, bool)),
             "share": (("test", "draw", "unknown"), shares),
             "pga": ("test", peaks),
             "pgv": ("test", peaks / 6.0),

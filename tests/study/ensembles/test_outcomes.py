@@ -18,6 +18,7 @@ def samples():
     return xr.Dataset(
         {
             "status": ("sample", STATUS),
+            "reason": ("sample", ["", "", "", "a remark", ""]),
             "energy_residual": ("sample", [1e-4, np.nan, 5e-4, 2e-4, np.nan]),
             "numerics_steps": ("sample", [10.0, 30.0, np.nan, 20.0, np.nan]),
         },
@@ -31,8 +32,8 @@ def test_every_sample_has_one_outcome():
     assert (sum(found), found.counted) == (5, 4)
 
 
-def test_unfinished_samples_are_those_that_did_not_complete(samples):
-    assert [int(one["sample"]) for one in unfinished(samples)] == [5, 8, 11]
+def test_unfinished_samples_are_those_that_did_not_complete_or_have_a_remark(samples):
+    assert [int(one["sample"]) for one in unfinished(samples)] == [5, 8, 9, 11]
 
 
 def test_figures_leave_out_samples_without_one(samples):

@@ -17,12 +17,14 @@ from blockshake.effects.registry import EFFECTS
 from blockshake.errors import InputError
 from blockshake.forces.flight.arcs import find_arcs
 from blockshake.forces.flight.impacts import find_impacts, summary
+from blockshake.forces.flight.inertia import seen_ratios
 from blockshake.forces.flight.paths import fallen
 
 MORE = 0.1  # of what the causes before it gain, that a further one needs besides
 MOST_CAUSES = 3  # causes
 _NINETY = 1.645  # standard deviations
 _READINGS = "free flight"
+_FEWEST_FLIGHTS = 20  # flights of a kind, from which on a cause's size is asked of them alone
 
 
 class DecidedFlights(NamedTuple):
@@ -111,7 +113,10 @@ def decide_flights(posed, without=()):
         silent=(),
         n_rows=sum(map(len, rows.values)),
         impacts=impact_words(summary(impacts)),
-        cannot_see=_not_seen(posed, broken, stages, share, rows, hidden, mirrored),
+        cannot_see=(
+            *_not_seen(posed, broken, stages, share, rows, hidden, mirrored),
+            *_otherwise_at_first(posed, arcs, causes),
+        ),
     )
     return DecidedFlights(decision, _evidence(posed, rows, causes, impacts, broken, share))
 
@@ -219,6 +224,7 @@ def _not_seen(posed, broken, stages, share, rows, hidden, mirrored):
             f"beside them {hidden.cause.title} gains {hidden.gain:.0f} nats, less than a tenth of what they "
             "gain, and is not named"
         )
+    lines.append(_inertia_words(seen_ratios(posed, rows.arcs)))
     if mirrored > needed_of("eccentricity"):
         lines.append(
             f"rotations of the other hand would explain the flights better, by {mirrored:.0f} nats: the signs of the "
@@ -234,6 +240,40 @@ def _not_seen(posed, broken, stages, share, rows, hidden, mirrored):
     if any(test.planar for test in posed.tests):
         lines.append("the motion was filmed in one plane: nothing across it is known")
     return tuple(lines)
+
+
+def _otherwise_at_first(posed, arcs, causes):
+    """Lines on causes whose size the first flights of the tests tell otherwise than the later ones do."""
+    tests = [arc.test for arc in arcs]
+    first = [arc for number, arc in enumerate(arcs) if arc.test not in tests[:number]]
+    groups = first, [arc for arc in arcs if arc not in first]
+    if min(map(len, groups)) < _FEWEST_FLIGHTS:
+        return
+    rows = [flight_rows(posed, own) for own in groups]
+    for fit in causes:
+        others = [other for other in causes if other is not fit]
+        found = [_sizes(posed, own.refitted(fit, others)) for own in rows]
+        for name in found[0]:
+            one, other = (sizes[name] for sizes in found)
+            if one.lower > other.upper or other.lower > one.upper:
+                yield (
+                    f"{fit.cause.title} differs: {name} {estimate_in_si(one)} in the tests' {len(first)} first "
+                    f"flights, {estimate_in_si(other)} in the {len(groups[1])} later ones; its form is not the true "
+                    "one, or another cause acts in some flights alone"
+                )
+                break
+
+
+def _inertia_words(ratios):
+    """The moments of inertia as free flight tells them, from `seen_ratios`."""
+    if ratios is None:
+        return "free flight does not tell the moments of inertia"
+    found = np.exp(ratios[0] + _NINETY * np.array([[0.0], [-1.0], [1.0]]) * ratios[1])
+    y, z = ("{:.3f} ({:.3f} to {:.3f})".format(*own) for own in found.T)
+    return (
+        f"moments of inertia over that about x, against the structure file's ratios: y {y}, z {z}; free flight tells "
+        "ratios alone"
+    )
 
 
 def _size_words(posed, fit):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.pages.drawing import BLACK, BLUE, GREY, MEASURED, new_figure
+from blockshake.pages.drawing import BLACK, BLUE, GREY, MEASURED, ORANGE, new_figure
 
 _BINS = 12
 
@@ -17,12 +17,18 @@ def plot_accelerations(evidence, axes_shown):
             own[name].to_numpy() for name in ("velocity", "acceleration", "explained")
         )
         limit = 4.0 * np.quantile(np.abs(measured), 0.75)
-        panel.plot(velocity, measured, ".", color=GREY, markersize=2.5, label="a flight")
+        first = np.zeros(len(velocity), dtype=bool)
+        first[np.unique(own["test"], return_index=True)[1]] = True
+        for some, color, label in ((~first, GREY, "later flights"), (first, ORANGE, "tests' first flights")):
+            panel.plot(velocity[some], measured[some], ".", color=color, markersize=2.5, label=label)
+        # of equal numbers of flights
+        bins = np.array_split(np.argsort(velocity), min(_BINS, max(len(velocity) // 8, 1)))
+        middle = [np.median(velocity[one]) for one in bins]
         for values, color, label in (
-            (measured, BLACK, "median, measured"),
-            (explained, BLUE, "median, explained"),
+            (measured, BLACK, f"median of {len(bins[-1])} flights, measured"),
+            (explained, BLUE, "the same, explained"),
         ):
-            middle, usual = _medians(velocity, values)
+            usual = [np.median(values[one]) for one in bins]
             panel.plot(middle, usual, "o-", color=color, markersize=3.0, label=label)
         panel.axhline(0.0, **MEASURED)
         panel.set_ylim(-limit, limit)
@@ -30,12 +36,6 @@ def plot_accelerations(evidence, axes_shown):
     panels[0].set_ylabel("acceleration beyond gravity [m/s2]")
     panels[-1].legend(loc="best")
     return figure
-
-
-def _medians(velocity, values):
-    """Medians in bins of equal numbers of flights."""
-    order = np.array_split(np.argsort(velocity), min(_BINS, max(len(velocity) // 8, 1)))
-    return [np.median(velocity[one]) for one in order], [np.median(values[one]) for one in order]
 
 
 def plot_errors(scores, colors):

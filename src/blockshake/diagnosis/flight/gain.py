@@ -13,12 +13,14 @@ from blockshake.diagnosis.gain.campaign_gain import CampaignGain
 from blockshake.diagnosis.nominal.ensemble import DISCREPANCY, EXTENDED, NOMINAL, RECALIBRATED
 from blockshake.diagnosis.verdict.verdict import Contrast, Gain, MeasuredGain
 from blockshake.forces.flight.arcs import find_arcs
+from blockshake.forces.flight.inertia import OF_RATIOS, seen_ratios
 from blockshake.statistics.resampling import resampled_weights
 
 _FRICTION = (0.03, 0.06, 0.1, 0.15, 0.22, 0.33, 0.5)
 _RESTITUTION = (0.0, 0.15, 0.3, 0.45, 0.6)
 _FINER = (0.75, 0.85, 1.0, 1.1, 1.25)  # times the best friction of these
 _BESIDE = (-0.1, -0.05, 0.0, 0.05, 0.1)  # beside the best restitution of these
+_INERTIA = (0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4)  # times the moments of inertia
 _MOST = 60  # open tests that a model is fitted to
 _EARLY = 0.1  # s after the first flight
 _ACTING = ("sensor-gain", "eccentricity", "push", "drag")  # causes that a replay can have
@@ -38,12 +40,14 @@ def flight_gain(opened, sealed, decision):
     CampaignGain
         ``scores``: ``place`` and ``early(test, kind)``, mean distance of the body's middle over the whole path and
         until 0.1 s after the first flight [m]; ``turn(test, kind)``, mean angle between the rotations [rad];
-        ``friction`` and ``restitution(kind)``. The gain is on ``place``.
+        ``friction`` and ``restitution(kind)``, ``inertia(kind, axis)``, the moments over the structure file's. The gain
+        is on ``place``.
 
     Notes
     -----
-    Every model starts a test from what its first flight shows. Recalibrated and extended model have the friction and
-    the restitution that make the paths of the open tests shortest apart, without and with the causes. Where free flight
+    Every model starts a test from what its first flight shows. Recalibrated and extended model have the friction, the
+    restitution and the size of the moments of inertia that make the paths of the open tests shortest apart, without and
+    with the causes; the ratios of the moments are those of `seen_ratios` where flights tell them. Where free flight
     does not tell forms apart, the open paths choose. The discrepancy without a name is the mean acceleration that open
     flights have beyond gravity.
     """
@@ -58,22 +62,30 @@ def flight_gain(opened, sealed, decision):
         why = "no open or no sealed test has a free flight" if choices else "no replay can have the causes"
         caveats = (f"no gain was measured on the paths: {why}",)
         return CampaignGain(MeasuredGain(rows=rows, caveats=caveats), xr.Dataset())
-    models, best, count = {NOMINAL: _nominal(opened)}, np.inf, 0
-    models[RECALIBRATED], _, runs = _recalibrated(opened, fitted, models[NOMINAL])
+    models, best, count, free = {NOMINAL: _nominal(opened)}, np.inf, 0, _nominal(opened)
+    if ratios := seen_ratios(opened, arcs_opened):
+        free = replace(free, inertia=tuple((ratios[0] @ OF_RATIOS).tolist()))
+    models[RECALIBRATED], _, _, runs = _recalibrated(opened, fitted, free)
     count += runs
     models[DISCREPANCY] = replace(models[RECALIBRATED], shift=tuple(shift.tolist()))
     for fits in choices:
-        model, error, runs = _recalibrated(opened, fitted, replace(models[NOMINAL], fits=fits))
+        model, error, sizes, runs = _recalibrated(opened, fitted, replace(free, fits=fits))
         count += runs
         if error < best:
-            models[EXTENDED], best = model, error
+            models[EXTENDED], best, between = model, error, sizes
     scores = _scores(sealed, able, models)
     scores = scores.assign(
         friction=("kind", [models[kind].friction for kind in KINDS]),
         restitution=("kind", [models[kind].restitution for kind in KINDS]),
+        inertia=(("kind", "axis"), [np.exp(models[kind].inertia) for kind in KINDS]),
+        axis=list("xyz"),
     )
     chosen = [fit.cause.title for fit in models[EXTENDED].fits]
-    caveats = [f"the model was extended by {' and '.join(chosen)}, by the paths of the open tests"]
+    caveats = [
+        f"the model was extended by {' and '.join(chosen)}, by the paths of the open tests",
+        "these paths are shortest apart with {:.2g} ({:.2g} to {:.2g}) times the moments of inertia of the structure "
+        "file".format(float(np.exp(np.mean(models[EXTENDED].inertia))), *between),
+    ]
     if len(able) < len(sealed.tests):
         left = len(sealed.tests) - len(able)
         caveats.append(f"{left} sealed tests have no free flight, and were not predicted")
@@ -107,25 +119,32 @@ def _fitted_tests(posed, arcs, most=_MOST):
 
 
 def _recalibrated(posed, tests, model):
-    """The model with friction and restitution by a grid, refined once; its mean error, and the number of runs."""
+    """The model with friction, restitution and inertia by a grid, refined once; its mean error, the interval of 90 %
+    of the factor on its moments of inertia, tests drawn again, and the number of runs."""
     errors = {}
 
-    def error(friction, restitution):
-        key = friction, restitution
+    def of_tests(*key):
         if key not in errors:
-            tried = replace(model, friction=friction, restitution=restitution)
-            errors[key] = np.mean([np.nanmean(replay(posed, test, arc, tried).middle) for test, arc in tests])
-        return errors[key]
+            friction, restitution, size = key
+            inertia = tuple((np.array(model.inertia) + np.log(size)).tolist())
+            tried = replace(model, friction=friction, restitution=restitution, inertia=inertia)
+            errors[key] = [np.nanmean(replay(posed, test, arc, tried).middle) for test, arc in tests], tried
+        return errors[key][0]
 
-    coarse = min(product(_FRICTION, _RESTITUTION), key=lambda one: error(*one))
+    def mean(key):
+        return np.mean(of_tests(*key))
+
+    friction, restitution, _ = min(product(_FRICTION, _RESTITUTION, [1.0]), key=mean)
+    by_size = np.array([of_tests(friction, restitution, size) for size in _INERTIA])
+    size = _INERTIA[int(by_size.mean(axis=1).argmin())]
+    weights = resampled_weights(len(tests), np.random.default_rng([len(tests), 45]))
+    between = np.quantile(np.array(_INERTIA)[(weights @ by_size.T).argmin(axis=1)], (0.05, 0.95))
     finer = [
-        (coarse[0] * factor, float(np.clip(coarse[1] + step, 0.0, 1.0)))
+        (friction * factor, float(np.clip(restitution + step, 0.0, 1.0)), size)
         for factor, step in product(_FINER, _BESIDE)
     ]
-    best = min(finer, key=lambda one: error(*one))
-    return (
-        replace(model, friction=best[0], restitution=best[1]), error(*best), len(errors) * len(tests)
-    )  # fmt: skip
+    best = min(finer, key=mean)
+    return errors[best][1], mean(best), between, len(errors) * len(tests)
 
 
 def _scores(posed, tests, models):

@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from blockshake.diagnosis.flight.causes import air_drag
 from blockshake.dynamics.motion import GroundMotion, rest_table
+from blockshake.forces.flight.inertia import with_inertia
 from blockshake.forces.flight.paths import dragged_by_square, fallen, off_centre
 from blockshake.forces.flight.tumbling import spins, tumbling
 from blockshake.geometry.rotations import rotation_matrices
@@ -28,12 +29,15 @@ class FlightModel:
         Causes in it.
     shift : tuple of float
         Steady acceleration without a name [m/s2].
+    inertia : tuple of float
+        Logarithms of the moments along the body's axes over those of the structure file.
     """
 
     friction: float
     restitution: float
     fits: tuple = ()
     shift: tuple = (0.0, 0.0, 0.0)
+    inertia: tuple = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -87,6 +91,7 @@ def filmed_replay(posed, test, arc, model, solver=MODEL, **options):
     **options
         Parameters and time step of `simulate`.
     """
+    posed = with_inertia(posed, model.inertia)
     structure = _structure(posed, test, arc, model)
     time = test.time[arc.first :] - test.time[arc.first]
     step = float(np.median(np.diff(time)))

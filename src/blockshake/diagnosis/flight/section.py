@@ -46,9 +46,9 @@ def answer_section(found):
             Box(words, facts),
             Items(tuple(map(sentence_case, verdict.caveats))),
             Figure(
-                "Acceleration beyond gravity of every free flight over its mean velocity. Black: medians of flights "
-                "in bins of equal numbers; blue: the same of what the causes make. Without a cause all lie on the "
-                "dashed line.",
+                "Acceleration beyond gravity of every free flight over its mean velocity, those that tests begin "
+                "with in orange. Black: medians of flights in bins of equal numbers; blue: the same of what the causes "
+                "make. Without a cause all lie on the dashed line.",
                 svg_of(plot_accelerations, found.evidence, shown),
             ),
         ),

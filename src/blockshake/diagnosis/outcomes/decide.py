@@ -157,6 +157,12 @@ def _not_seen(outcomes, names, telling, chances, fell):
     unfinished = sum(int(np.isnan(run["lean"]).sum()) for run in outcomes.runs)
     if unfinished:
         lines.append(f"{unfinished} runs were not finished, and were left out")
+    for run in outcomes.runs:
+        if settled := int(run["settled"].sum()):
+            lines.append(
+                f"in {settled} of {run['settled'].size} runs by {run.attrs['model']} the body moves by more than 1 % "
+                "of its size before the ground does: contacts or mass centre do not hold it as it was placed"
+            )
     wrong = sum(int((p > 0.5) != outcome) for p, outcome in zip(chances["extended"], fell, strict=True))
     lines.append(f"the likeliest model predicts {wrong} of {len(names)} open tests otherwise than they ended")
     return tuple(lines)

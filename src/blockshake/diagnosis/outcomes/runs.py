@@ -53,13 +53,14 @@ def simulate_outcomes(campaign, batch, solver, draws, store):
     -------
     xarray.Dataset
         Along ``test`` and ``draw``: ``lean``, the largest angle between the body's first vertical and its own until
-        the end [rad], infinite of a body that fell and NaN of a run that was not finished; ``share(test, draw,
-        unknown)``. Along ``test``: ``pga`` [m/s2] and ``pgv`` [m/s] of the commanded motion along x.
+        the end [rad], infinite of a body that fell and NaN of a run that was not finished; ``settled``: the body
+        moved before the ground did; ``share(test, draw, unknown)``. Along ``test``: ``pga`` [m/s2] and ``pgv`` [m/s]
+        of the commanded motion along x.
     """
     structure = load_structure(campaign.structure)
     body, identity = standing_body(structure), structure_digest(structure)
     names = list(campaign.tests)[batch * BATCH : (batch + 1) * BATCH]
-    leans, shares, peaks = [], [], []
+    leans, moved, shares, peaks = [], [], [], []
     for done, name in enumerate(names):
         entry = campaign.tests[name]
         shares.append(shares_of(batch * BATCH + done, draws))
@@ -70,15 +71,17 @@ def simulate_outcomes(campaign, batch, solver, draws, store):
         content = path.read_bytes()
         for number, own in enumerate(shares[-1]):
             given = (solver, identity, content, entry.scale, str(entry.baseline), own)
-            made = store.value(given, partial(_run, structure, body, path, entry, solver, own))
+            made, settled = store.value(given, partial(_run, structure, body, path, entry, solver, own))
             how = {"inf": "fell", "nan": "not finished"}.get(
                 f"{made:g}", f"leant by {np.degrees(made):.2g} degrees"
             )
-            store.say(f"{name} {solver} model {number} {done + 1}/{len(names)}: {how}")
+            store.say(f"{name} {solver} model {number} {done + 1}/{len(names)}: {how} {settled}".rstrip())
             leans.append(made)
+            moved.append(bool(settled))
     return xr.Dataset(
         {
             "lean": (("test", "draw"), np.reshape(leans, (len(names), draws)), {"units": "rad"}),
+            "settled": (("test", "draw"), np.reshape(moved, (len(names), draws))),
             "share": (("test", "draw", "unknown"), shares),
             "pga": ("test", [peak for peak, _ in peaks], {"units": "m s-2"}),
             "pgv": ("test", [peak for _, peak in peaks], {"units": "m s-1"}),
@@ -89,13 +92,14 @@ def simulate_outcomes(campaign, batch, solver, draws, store):
 
 
 def _run(structure, body, path, entry, solver, shares, checkpoint):
-    """Largest lean [rad] of one run, see `simulate_outcomes`; a run of seconds needs no checkpoint."""
+    """Largest lean [rad] of one run, see `simulate_outcomes`, and what moved before the ground did, in words."""
     built, factor = model_at(structure, body, solver, shares)
     motion = load_motion(path, entry.scale * factor, entry.baseline)
     run = simulate(built, motion, solver, output_rate=_KEPT_RATE, accelerometers=False)
     if run.attrs["status"] not in FINISHED:
-        return np.nan
+        return np.nan, run.attrs["settled"]
     if run.attrs["status"] in FALLEN:
-        return np.inf
+        return np.inf, run.attrs["settled"]
     turned = rotation_matrices(run["orientation"][:, body].to_numpy())
-    return float(np.arccos(np.clip(np.einsum("nk,k->n", turned[:, 2], turned[0, 2]), -1.0, 1.0)).max())
+    lean = np.arccos(np.clip(np.einsum("nk,k->n", turned[:, 2], turned[0, 2]), -1.0, 1.0)).max()
+    return float(lean), run.attrs["settled"]

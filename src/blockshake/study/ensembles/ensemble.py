@@ -16,7 +16,7 @@ POSES = ("position", "orientation")
 ALONG_X = {"axis": ["x"]}
 # digits kept in histories: 0.1 um, a thousandth of a marker's noise, and of a quaternion as much at a block's length
 DECIMALS = {"m": 7, "1": 8}
-_OF_ONE_RUN = ("status", "reason", "end_time", "sample", "parameters")
+_OF_ONE_RUN = ("status", "reason", "settled", "end_time", "sample", "parameters")
 
 
 def run_as_sample(run, sample, values, slab_marker):

@@ -48,10 +48,9 @@ def count_outcomes(status):
 
 
 def unfinished(samples):
-    """Samples of `sample_figures` that did not complete, a dataset each."""
-    return [
-        samples.sel(sample=one) for one in samples["sample"].values[samples["status"].values != "completed"]
-    ]
+    """Samples of `sample_figures` that did not complete, or that have a remark, a dataset each."""
+    told = (samples["status"].values != "completed") | (samples["reason"].values.astype(str) != "")
+    return [samples.sel(sample=one) for one in samples["sample"].values[told]]
 
 
 def numerical_figure(samples, name, statistic):

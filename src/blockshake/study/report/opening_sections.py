@@ -66,8 +66,8 @@ def failures(content):
         )
     )
     table = Table(
-        "Samples that did not complete. Samples that collapsed, or still fell when the window ended, count in the "
-        "statistics up to their end; failed samples do not.",
+        "Samples that did not complete, or with a remark. Samples that collapsed, or still fell when the window "
+        "ended, count in the statistics up to their end; failed samples do not.",
         ("Case", "Model", "Sample", "Status", "End [s]", "Reason"), tuple(rows), "llrlrl",
     )  # fmt: skip
     return [*([table] if rows else []), Text(words)]
