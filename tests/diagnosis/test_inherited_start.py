@@ -31,38 +31,38 @@ TESTS = {
 }
 
 
-def _campaign(folder, surveyed=True):
-    """The campaign, made by contact dynamics; without the survey its readings are the same."""
-    folder.mkdir()
-    lines = ["name: inherited", f"structure: {(folder / 'two-blocks.yaml').name}", "tests:"]
-    (folder / "two-blocks.yaml").write_text((STRUCTURES / "two-blocks.yaml").read_text())
-    for seed, (name, (motion, scale, role, places)) in enumerate(TESTS.items()):
-        lines.append(f"  - {{name: {name}, file: {name}.nc, motion: {motion}, scale: {scale}, role: {role}}}")
-        stands = load_structure(STRUCTURE, placed(STRUCTURE, places))
-        run = simulate(
-            stands,
-            load_motion(motion, scale),
-            SOLVER,
-            {},
-            time_step=5e-4,
-            duration=DURATION,
-            output_rate=200.0,
-        )
-        test = observe(run, stands, Instruments(), seed).drop_vars("marker_initial_position")
-        if surveyed:
-            zero = np.zeros(3)
-            test = test.assign_coords(body=STRUCTURE.body_names)
-            test["initial_offset"] = ("body", "axis"), np.column_stack([places[:, 0], places[:, 1], zero])
-            test["initial_rotation"] = ("body", "axis"), np.column_stack([zero, zero, places[:, 2]])
-        write_dataset(folder / f"{name}.nc", test)
-    (folder / "campaign.yaml").write_text("\n".join(lines) + "\n")
-    return load_campaign(folder)
+def _read(motion, scale, places, seed):
+    """Readings of a test that contact dynamics makes, with the survey before it."""
+    stands = load_structure(STRUCTURE, placed(STRUCTURE, places))
+    run = simulate(
+        stands, load_motion(motion, scale), SOLVER, {}, time_step=5e-4, duration=DURATION, output_rate=200.0
+    )
+    test = observe(run, stands, Instruments(), seed).drop_vars("marker_initial_position")
+    test, zero = test.assign_coords(body=STRUCTURE.body_names), np.zeros(3)
+    test["initial_offset"] = ("body", "axis"), np.column_stack([places[:, 0], places[:, 1], zero])
+    test["initial_rotation"] = ("body", "axis"), np.column_stack([zero, zero, places[:, 2]])
+    return test
 
 
 @pytest.fixture(scope="module")
 def campaigns(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("inherited")
-    return {surveyed: _campaign(folder / f"surveyed-{surveyed}", surveyed) for surveyed in (True, False)}
+    """The campaign, and the same readings without the survey; what the sealed test reads is of no matter."""
+    readings, found = {}, {}
+    for seed, (name, (motion, scale, role, places)) in enumerate(TESTS.items()):
+        readings[name] = readings["second"] if role == "sealed" else _read(motion, scale, places, seed)
+    for surveyed in (True, False):
+        folder = tmp_path_factory.mktemp("inherited")
+        (folder / "two-blocks.yaml").write_text((STRUCTURES / "two-blocks.yaml").read_text())
+        lines = ["name: inherited", "structure: two-blocks.yaml", "tests:"]
+        for name, (motion, scale, role, _) in TESTS.items():
+            lines.append(
+                f"  - {{name: {name}, file: {name}.nc, motion: {motion}, scale: {scale}, role: {role}}}"
+            )
+            test = readings[name]
+            write_dataset(folder / f"{name}.nc", test if surveyed else test.drop_dims("body"))
+        (folder / "campaign.yaml").write_text("\n".join(lines) + "\n")
+        found[surveyed] = load_campaign(folder)
+    return found
 
 
 def _misfit(campaign, folder):
@@ -99,9 +99,9 @@ def test_joints_have_the_levers_of_the_places(campaigns):
     np.testing.assert_allclose(lower.axes[:, 0], [np.cos(turn), np.sin(turn), 0.0], atol=1e-9)
     assert lower.half_width == pytest.approx(seen["first"].faces[0].half_width, rel=1e-9)
     # the two blocks share less than the width of either, and its middle is off that of block-2
-    shared = 2.0 * seen["first"].faces[1].half_width - abs(PLACES[2, 0] - PLACES[1, 0])
-    assert 2.0 * upper.half_width == pytest.approx(shared, abs=2.4 * (PLACES[1, 2] - PLACES[2, 2]))
-    assert upper.on_upper[0] == pytest.approx(0.5 * (PLACES[1, 0] - PLACES[2, 0]), abs=2e-3)
+    off = PLACES[1, 0] - PLACES[2, 0]
+    assert 2.0 * upper.half_width == pytest.approx(2.0 * seen["first"].faces[1].half_width - off, abs=1e-4)
+    assert upper.on_upper[0] == pytest.approx(0.5 * off, abs=1e-3)
 
 
 def test_a_clean_campaign_names_nothing_from_the_surveyed_places_and_something_without(campaigns):

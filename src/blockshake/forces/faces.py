@@ -98,37 +98,41 @@ def find_faces(structure):
 
 
 def _common_area(structure, lower, upper, normal):
-    """Axes of a face and corners of what it has in common: along the edges of that box along which it is narrowest."""
-    found = []
-    for axes in _face_axes(structure, (lower, upper), normal):
-        outlines = (_outline(structure, body, sign, axes) for body, sign in ((lower, 1.0), (upper, -1.0)))
-        found.append((axes, _common_corners(*outlines)))
-    return min(found, key=lambda one: np.ptp(one[1][:, 0]) if len(one[1]) else np.inf)
+    """Axes of a face, and corners of what it has in common: along the edges of the smaller body, if it is turned off x.
+
+    The other body counts as if it had the same edges: a small turn against each other moves no edge at its middle.
+    """
+    sides = []
+    for body, sign in ((lower, 1.0), (upper, -1.0)):
+        axes = _face_axes(structure, body, normal)
+        sides.append((axes, _outline(structure, body, sign, axes)))
+    axes, _ = min(sides, key=lambda side: np.ptp(side[1][:, :2], axis=0).prod())
+    places = [structure.position[body] @ axes for body in (lower, upper)]
+    return axes, _common_corners(*(place + side[1] for place, side in zip(places, sides, strict=True)))
 
 
-def _face_axes(structure, bodies, normal):
-    """Two tangents and the normal, in columns, by each of some bodies.
+def _face_axes(structure, body, normal):
+    """Two tangents and the normal, in columns.
 
     The first tangent is along x, or z on a face that looks along x, or along the edges of a box that is turned off it.
     """
     along = np.eye(3)[0] if abs(normal[0]) < 0.9 else np.eye(3)[2]
-    for body in bodies:
-        edges = rotation_matrices(structure.orientation[body])
-        edge = edges[:, int(np.argmax(np.abs(along @ edges)))]
-        near = abs(along @ edge)
-        turned = structure.file.shapes[structure.file.bodies[body].shape].box and _TURNED < near < _AS_LAID
-        first = np.sign(along @ edge) * edge if turned else along
-        first = first - (first @ normal) * normal
-        first /= np.linalg.norm(first)
-        yield np.column_stack([first, np.cross(normal, first), normal])
+    edges = rotation_matrices(structure.orientation[body])
+    edge = edges[:, int(np.argmax(np.abs(along @ edges)))]
+    box = structure.file.shapes[structure.file.bodies[body].shape].box
+    if box and _TURNED < abs(along @ edge) < _AS_LAID:
+        along = np.sign(along @ edge) * edge
+    first = along - (along @ normal) * normal
+    first /= np.linalg.norm(first)
+    return np.column_stack([first, np.cross(normal, first), normal])
 
 
 def _outline(structure, body, sign, axes):
-    """Corners along the axes (n, 3) [m], counter-clockwise, of a body's face that looks along the last one, or back."""
+    """Corners from its mass centre (n, 3) [m], counter-clockwise, of a body's face that looks along the last axis."""
     turn = rotation_matrices(structure.orientation[body]).T @ axes
     polyhedron = structure.solid(body).polyhedron
     face = polyhedron.faces[int(np.argmax(sign * polyhedron.normals @ turn[:, 2]))]
-    corners = structure.position[body] @ axes + polyhedron.vertices[face] @ turn
+    corners = polyhedron.vertices[face] @ turn
     return corners if sign > 0.0 else corners[::-1]
 
 

@@ -85,7 +85,8 @@ def _effect(name, runs, measured):
         finished = finished & np.isin(status, FINISHED)
     count = int(finished.sum())
     weights = resampled_weights(count, np.random.default_rng([count, *name.encode()])) if count else None
-    drift, uplift = map(float, _peaks(measured))
+    end = max(float(one["time"][-1]) for one in own)
+    drift, uplift = map(float, _peaks(measured.sel(time=slice(None, end))))
     found = quantities([[one[finished] for one in side] for side in sides], weights).rename(
         quantity="response"
     )
