@@ -5,7 +5,7 @@ import numpy as np
 from blockshake.diagnosis.gain.extended_model import acting_causes
 from blockshake.diagnosis.misfit.figure import add_legend, draw_history
 from blockshake.diagnosis.wording import percent_words
-from blockshake.pages.blocks import Figure, Items, Section, Table, Text
+from blockshake.pages.blocks import Figure, Items, Listing, Section, Table, Text
 from blockshake.pages.drawing import BLUE, GREY, ORANGE, new_figure, svg_of
 from blockshake.pages.wording import MISSING, listed, number, quantile_percent, sentence_case
 from blockshake.statistics.intervals import samples_needed
@@ -137,9 +137,13 @@ def effect_section(diagnosed):
             Items(tuple(change_sentence(name, cause, of_test) for name, of_test in tests.items())),
             Table(caption, header, tuple(rows), "llrrrr"),
             Text(
-                "Other motions and levels, more samples, and the safe level of the motion are an ordinary study with "
-                "the cause in it: `blockshake extend-study` writes it from the verdict of this diagnosis and from the "
-                "study of your decision, and `blockshake study` runs it."
+                "Other motions and levels, more samples, and the safe level are a study with the cause in it. It is "
+                "written from the verdict of this diagnosis and the study of your decision, and run, by:"
+            ),
+            Listing(
+                "Commands",
+                "blockshake extend-study verdict.json STUDY.yaml --output extended.yaml\n"
+                "blockshake study extended.yaml",
             ),
         ),
     )
