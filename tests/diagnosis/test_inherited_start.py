@@ -73,12 +73,12 @@ def _misfit(campaign, folder):
     return misfit([judged_test("second", measured, [ensemble])])
 
 
-def test_nominal_models_that_start_as_surveyed_hold_the_reading_and_others_do_not(campaigns, tmp_path):
+def test_nominal_models_that_start_as_surveyed_hold_the_reading_and_others_are_farther(campaigns, tmp_path):
     there, elsewhere = (_misfit(campaigns[surveyed], tmp_path / str(surveyed)) for surveyed in (True, False))
     assert float(there["p"]) > 0.1
-    assert float(elsewhere["p"]) == pytest.approx(0.1)
+    assert float(elsewhere["p"]) < float(there["p"])
     largest = [float((one["score"] / one["usual"]).max()) for one in (there, elsewhere)]
-    assert largest[1] > 2.0 * largest[0]
+    assert largest[0] < 1.0 < largest[1]
 
 
 def test_a_sealed_test_is_simulated_from_its_survey(campaigns):
@@ -104,14 +104,16 @@ def test_joints_have_the_levers_of_the_places(campaigns):
     assert upper.on_upper[0] == pytest.approx(0.5 * off, abs=1e-3)
 
 
-def test_a_clean_campaign_names_nothing_from_the_surveyed_places_and_something_without(campaigns):
+def test_a_clean_campaign_names_nothing_from_the_surveyed_places_and_a_false_fault_without(campaigns):
     clean = see_campaign(campaigns[True])
     decision = decide(clean.tests).decision
     assert not clean.parity.findings
     assert not decision.parts
     assert not any(one.changes for one in decision.histories)
     assert "block-1 20 mm and 35 mrad" in clean.parity.gaps["second"][0]
+    # a turn that nobody tells is taken for a marker that drifts
     blind = see_campaign(campaigns[False])
-    decision = decide(blind.tests).decision
-    assert blind.parity.findings or decision.parts or any(one.changes for one in decision.histories)
+    assert {name.rpartition("-")[0] for finding in blind.parity.findings for name in finding.where} == {
+        "block-1"
+    }
     assert blind.parity.gaps["second"] == []
