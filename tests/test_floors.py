@@ -51,14 +51,14 @@ MOST_MODULES = 15
 WITH_ROOMS = ("diagnosis", "study")  # whose folders have a budget each
 MOST_LINES = {
     ".": 2353, "tables": 535, "statistics": 368, "geometry": 2644, "dynamics": 3002, "solvers": 8757,
-    "measurement": 4246, "simulation": 1930, "parity": 2232, "forces": 2166, "effects": 1168, "pages": 1430,
-    "study": 1006, "study/sampling": 1201, "study/ensembles": 1385, "study/stiffness": 512,
-    "study/comparison": 691, "study/fragility": 1032, "study/sensitivity": 700, "study/calibration": 1078,
-    "study/report": 1904, "views": 764, "diagnosis": 354, "diagnosis/evidence": 1117,
-    "diagnosis/outside": 617, "diagnosis/answer": 1783, "diagnosis/nominal": 765, "diagnosis/misfit": 429,
-    "diagnosis/verdict": 592, "diagnosis/gain": 1473, "diagnosis/report": 972, "virtual": 476,
+    "measurement": 4414, "simulation": 1910, "parity": 2245, "forces": 2189, "effects": 1168, "pages": 1430,
+    "study": 1006, "study/sampling": 1201, "study/ensembles": 1397, "study/stiffness": 512,
+    "study/comparison": 691, "study/fragility": 1032, "study/sensitivity": 700, "study/calibration": 1079,
+    "study/report": 1904, "views": 764, "diagnosis": 354, "diagnosis/evidence": 1119,
+    "diagnosis/outside": 617, "diagnosis/answer": 1783, "diagnosis/nominal": 778, "diagnosis/misfit": 429,
+    "diagnosis/verdict": 592, "diagnosis/gain": 1502, "diagnosis/report": 973, "virtual": 477,
     "own_files": 1184, "cost": 296, "diagnosis/flight": 1280, "diagnosis/outcomes": 922,
-    "diagnosis/planning": 580, "study/extension": 308,
+    "diagnosis/planning": 580, "study/extension": 318,
 }  # fmt: skip
 MOST_LINES_TOGETHER = 53_700
 

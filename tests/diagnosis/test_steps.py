@@ -56,6 +56,14 @@ def test_the_right_cause_gains_and_a_wrong_size_less(found):
     assert gained.summary.gain.nominal.estimate > 0.8
     assert gained.summary.gain.placebo.estimate == pytest.approx(0.0, abs=0.3)  # the formula knows no joint
     assert gained.summary.runs > 0
+    # the cause halves a friction, and the formula moves the more the less friction there is
+    effect = gained.scores.sel(test="one-150")
+    assert int(effect["paired"]) == TINY.members * len(SOLVERS)
+    change = effect.sel(response="median_drift", side="change")
+    assert float(change["value_interval"].min()) > 0.0
+    assert float(effect["value"].sel(response="collapse", side="extended")) == 0.0
+    extended = float(effect["value"].sel(response="median_drift", side="extended"))
+    assert float(effect["largest"].sel(response="median_drift")) == pytest.approx(extended, rel=0.2)
     nothing = gain_of(folder, campaign, files, _decision(0.98))
     assert nothing.summary.gain.recalibrated.estimate < 0.3
     gone = gain_of(folder, campaign, files, _decision(0.5, ("block-1-block-2", "slab-block-1")))

@@ -116,7 +116,7 @@ def run_files(wildcards):
         **case_files(wildcards),
         "base": (
             f"results/{study}/inputs/{case}.nc"
-            if CASES[case]["input"] == "measured"
+            if CASES[case]["measured"]
             else []
         ),
         "design": f"results/{study}/design.csv",

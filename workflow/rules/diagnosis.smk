@@ -117,12 +117,16 @@ rule describe_misfit:
 
 
 rule extend_model:
-    """Ensembles by one solver on the sealed tests: nominal, recalibrated, extended by the causes, and a placebo."""
+    """Ensembles by one solver on the sealed tests: nominal, recalibrated, extended by the causes, and a placebo.
+
+    Of the sealed files it reads where the blocks stood at the start, and no reading.
+    """
     input:
         frozen="results/diagnosis/{campaign}/frozen.json",
         decision="results/diagnosis/{campaign}/decision.json",
         parity="results/diagnosis/{campaign}/parity.json",
         motions=lambda wildcards: sealed_motions(wildcards.campaign),
+        sealed=lambda wildcards: test_files(wildcards.campaign, "sealed"),
         tests=lambda wildcards: test_files(wildcards.campaign, "open"),
         ensembles=lambda wildcards: ensemble_files(
             wildcards.campaign, [wildcards.solver]
@@ -148,7 +152,7 @@ rule extend_model:
 
 
 rule measure_gain:
-    """What naming the cause gains on the sealed tests, against its rivals: the one rule that reads them."""
+    """What naming the cause gains on the sealed tests, against its rivals: the one rule that reads what they measured."""
     input:
         frozen="results/diagnosis/{campaign}/frozen.json",
         decision="results/diagnosis/{campaign}/decision.json",

@@ -7,6 +7,9 @@ from blockshake.study.ensembles.ensemble import join_batches
 
 with logging_to(snakemake.log[0]) as say:
     of, runs = snakemake.params, CaseRuns(**snakemake.params.runs)
-    motions = driving_motions(runs.case, snakemake.input.base, of.seed)
+    base = snakemake.input.base
+    motions = driving_motions(runs.case, base, of.seed)
     rows, store = batch_rows(snakemake.wildcards.batch, snakemake.input), Store(of.store, of.source, say)
-    write_dataset(snakemake.output[0], join_batches(simulate_samples(runs, motions, rows, store)), DECIMALS)
+    write_dataset(
+        snakemake.output[0], join_batches(simulate_samples(runs, motions, rows, store, base)), DECIMALS
+    )

@@ -9,6 +9,7 @@ from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.joints import contact_normals
 
 _MARGIN = 2e-4  # m, between surfaces that touch at the start: twice the contract's 0.1 mm
+_TURNED, _AS_LAID = np.cos(0.5), 1.0 - 1e-9  # cosines of turns between which a face has the axes of a box
 
 
 @dataclass(frozen=True)
@@ -28,8 +29,8 @@ class Face:
     on_upper : float64 array, shape (3,)
         Middle of the face from the mass centre of the upper body, in its frame [m].
     axes : float64 array, shape (3, 3)
-        At the start, world frame, in columns: two tangents, the first one along x as far as the face allows, and the
-        normal from the lower to the upper body.
+        At the start, world frame, in columns: two tangents, the first one along x as far as the face allows, or along
+        the edges of a box that is turned, and the normal from the lower to the upper body.
     """
 
     name: str
@@ -68,10 +69,7 @@ def find_faces(structure):
     ]
     faces = []
     for (lower, upper), normal in zip(pairs, contact_normals(structure, pairs), strict=True):
-        axes = _face_axes(normal)
-        corners = _common_corners(
-            _outline(structure, lower, 1.0, axes), _outline(structure, upper, -1.0, axes)
-        )
+        axes, corners = _common_area(structure, lower, upper, normal)
         if not len(corners):
             continue
         middle = axes @ (0.5 * (corners.min(axis=0) + corners.max(axis=0)))
@@ -91,20 +89,42 @@ def find_faces(structure):
     return faces
 
 
-def _face_axes(normal):
-    """Two tangents and the normal, in columns; the first tangent is along x, or z on a face that looks along x."""
+def _common_area(structure, lower, upper, normal):
+    """Axes of a face, and corners of what it has in common: along the edges of the smaller body, if it is turned off x.
+
+    The other body counts as if it had the same edges: a small turn against each other moves no edge at its middle.
+    """
+    sides = []
+    for body, sign in ((lower, 1.0), (upper, -1.0)):
+        axes = _face_axes(structure, body, normal)
+        sides.append((axes, _outline(structure, body, sign, axes)))
+    axes, _ = min(sides, key=lambda side: np.ptp(side[1][:, :2], axis=0).prod())
+    places = [structure.position[body] @ axes for body in (lower, upper)]
+    return axes, _common_corners(*(place + side[1] for place, side in zip(places, sides, strict=True)))
+
+
+def _face_axes(structure, body, normal):
+    """Two tangents and the normal, in columns.
+
+    The first tangent is along x, or z on a face that looks along x, or along the edges of a box that is turned off it.
+    """
     along = np.eye(3)[0] if abs(normal[0]) < 0.9 else np.eye(3)[2]
+    edges = rotation_matrices(structure.orientation[body])
+    edge = edges[:, int(np.argmax(np.abs(along @ edges)))]
+    box = structure.file.shapes[structure.file.bodies[body].shape].box
+    if box and _TURNED < abs(along @ edge) < _AS_LAID:
+        along = np.sign(along @ edge) * edge
     first = along - (along @ normal) * normal
     first /= np.linalg.norm(first)
     return np.column_stack([first, np.cross(normal, first), normal])
 
 
 def _outline(structure, body, sign, axes):
-    """Corners along the axes (n, 3) [m], counter-clockwise, of a body's face that looks along the last one, or back."""
+    """Corners from its mass centre (n, 3) [m], counter-clockwise, of a body's face that looks along the last axis."""
     turn = rotation_matrices(structure.orientation[body]).T @ axes
     polyhedron = structure.solid(body).polyhedron
     face = polyhedron.faces[int(np.argmax(sign * polyhedron.normals @ turn[:, 2]))]
-    corners = structure.position[body] @ axes + polyhedron.vertices[face] @ turn
+    corners = polyhedron.vertices[face] @ turn
     return corners if sign > 0.0 else corners[::-1]
 
 

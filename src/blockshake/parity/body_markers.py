@@ -1,12 +1,13 @@
 """Markers of one body in the tests that are read together, and the pose that they give."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from scipy.ndimage import binary_opening
 
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.measurement.campaigns.starting_places import standing
 from blockshake.measurement.motion.body_frame import ON_LINE, outlying, rigid_jacobian, see_from_body
 from blockshake.measurement.sensors.markers import whole_markers
 
@@ -26,8 +27,8 @@ class BodyMarkers:
     markers : tuple of str
     points : float64 array, shape (n_markers, 3)
         Body frame [m].
-    position, rotation : float64 arrays, shapes (3,), (3, 3)
-        Pose at rest, of the structure.
+    position, rotation : float64 arrays, shapes (n_tests, 3), (n_tests, 3, 3)
+        Pose at rest in each test; of one test, see `in_test`, (3,) and (3, 3).
     tests : tuple of str
     readings : list of (time, displacement)
         Times [s] and readings (n_times, n_markers, 3) of each test, inertial frame [m].
@@ -43,6 +44,7 @@ class BodyMarkers:
     @classmethod
     def of(cls, structure, body, tests, names):
         """Markers of a body, where ``names`` has them, in ``tests`` (readings by name)."""
+        starts = [standing(structure, test) for test in tests.values()]
         markers = [
             marker for marker in structure.file.markers if marker.body == body and marker.name in names
         ]
@@ -51,14 +53,19 @@ class BodyMarkers:
         return cls(
             tuple(carried),
             np.array([marker.position for marker in markers], dtype=float).reshape(-1, 3),
-            structure.position[index],
-            rotation_matrices(structure.orientation[index]),
+            np.array([start.position[index] for start in starts]),
+            rotation_matrices([start.orientation[index] for start in starts]),
             tuple(tests),
             [
                 (moved["time"].to_numpy(), moved.transpose("time", "marker", "axis").to_numpy())
                 for moved in displacements
             ],
         )
+
+    def in_test(self, number=0):
+        """The body in the test of this number alone."""
+        start = {"position": self.position[number], "rotation": self.rotation[number]}
+        return replace(self, **start, tests=self.tests[number:][:1], readings=self.readings[number:][:1])
 
     def frame(self, displacement, offset=0.0):
         """`BodyFrame` of displacements of the markers, these as far off their points as ``offset`` (body frame) [m]."""
@@ -101,7 +108,8 @@ class MeasuredPose(NamedTuple):
 
 def measured_pose(body, test):
     """`MeasuredPose` of `BodyMarkers` in the test of this number, outliers left out; None where too little was read."""
-    time, displacement = body.readings[test]
+    body = body.in_test(test)
+    ((time, displacement),) = body.readings
     first = body.frame(displacement)
     displacement = np.where(outlying(first.residual)[..., None], np.nan, displacement)
     # steps where a marker comes or goes would look like acceleration

@@ -125,7 +125,8 @@ def _linearised(body, unknowns, sizes, faults):
 
 def _one_test(body, unknowns, sizes, test):
     """Columns, residual and projector of one test, of the times at which the body stands."""
-    time, displacement = body.readings[test]
+    body = body.in_test(test)
+    ((time, displacement),) = body.readings
     scale = (time - time[0]) / (time[-1] - time[0]) - 0.5
     creep, gains, places = (sizes[numbers] for _, numbers in list(unknowns.numbers.items())[1:])
     displacement = (displacement - scale[:, None, None] * creep[test]) / (1.0 + gains[0])

@@ -8,6 +8,7 @@ import xarray as xr
 
 from blockshake.files import load_made_json
 from blockshake.measurement.campaigns.faulty_readings import faulty_lines
+from blockshake.measurement.campaigns.starting_places import standing, starting_lines
 from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.motion.fall import Fall
 from blockshake.parity import marker_faults, transducer_faults
@@ -152,9 +153,11 @@ def check_parity(tests, structure, sensors, level=LEVEL):
     """
     sensors = sensors.not_noiseless()
     noise = sensors.marker_noise
-    gaps = {name: faulty_lines(test) + short_lines(test) for name, test in tests.items()}
+    gaps = {
+        name: faulty_lines(test) + short_lines(test) + starting_lines(test) for name, test in tests.items()
+    }
     findings = saturation(tests, level)
-    tests = {name: without_outliers(test, structure) for name, test in tests.items()}
+    tests = {name: without_outliers(test, standing(structure, test)) for name, test in tests.items()}
     share = Level(level, _looked_at(bodies_with_markers(structure, tests), tests))
 
     def without(faults):

@@ -6,10 +6,11 @@ from scipy.interpolate import CubicSpline
 
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
+from blockshake.measurement.campaigns.starting_places import placed
 from blockshake.measurement.sensors.instruments import observe
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.models import part_parameters
-from blockshake.simulation.simulate import placed, simulate
+from blockshake.simulation.simulate import simulate
 
 
 def shake(structure, parameters, effect, motion, settings, places, duration, seed, surveyed=None):

@@ -7,7 +7,7 @@ from blockshake.diagnosis.answer.decide import decide
 from blockshake.diagnosis.verdict.ladder import rung
 from blockshake.diagnosis.verdict.verdict import MeasuredGain
 from blockshake.effects.registry import with_effect
-from blockshake.simulation.simulate import placed
+from blockshake.measurement.campaigns.starting_places import placed
 
 MOTIONS = {
     "first": ("alkion", 2.5), "second": ("basso-tirreno", 2.0), "third": ("alkion", 2.5), "fourth": ("alkion", 2.8),

@@ -8,6 +8,8 @@ from blockshake.diagnosis.verdict.verdict import Contrast, Gain
 from blockshake.effects.registry import EFFECTS
 from blockshake.parity.finding import Finding
 from blockshake.parity.parity import Parity
+from blockshake.statistics.resampling import resampled_weights
+from blockshake.study.extension.changes import quantities
 
 OPEN = ("alkion-100", "alkion-250", "basso-200")
 SEALED = ("alkion-300", "basso-250")
@@ -174,15 +176,14 @@ def responses(joints, top):
     """Gain on the responses of sealed tests, as `response_gain` has it."""
     kinds = ["nominal", "recalibrated", "extended", "placebo", "discrepancy"]
     found = histories(SEALED, joints, top, kinds)
-    largest = np.outer([0.020, 0.021, 0.026, 0.021, 0.022], [1.0, 1.2])
+    drift = np.random.default_rng(1).lognormal(np.log(0.02), 0.1, 24)
+    sides = [(factor * drift, 0.1 * factor * drift, drift < 0.0) for factor in (1.0, 1.3)]
+    effect = quantities(sides, resampled_weights(24, np.random.default_rng(2))).rename(quantity="response")
+    effect = effect.assign(paired=24, largest=("response", [0.0262, 0.0262, 0.0026, np.nan, np.nan]))
     score = np.array([0.9, 0.8, 0.3, 0.8, 0.7])
-    return found.assign(
+    return found.merge(xr.concat([effect, effect], dim=xr.Variable("test", list(SEALED)))).assign(
         score=("kind", score),
         floor=0.2,
-        largest=(("kind", "test"), largest),
-        largest_lower=(("kind", "test"), 0.8 * largest),
-        largest_upper=(("kind", "test"), 1.2 * largest),
-        largest_measured=("test", [0.0262, 0.0313]),
     )
 
 

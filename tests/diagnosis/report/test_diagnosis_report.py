@@ -127,13 +127,29 @@ def test_every_cause_of_the_set_has_its_size(documents):
 
 
 def test_gain_stands_on_forces_and_on_responses(documents):
-    gains, drifts = blocks_of(documents["named"], "table", "gain")
+    (gains,) = blocks_of(documents["named"], "table", "gain")
     assert gains.header == ("Rival", "Forces", "Responses")
     assert {row[1:] for row in gains.rows} == {("80 % (70 to 90 %)", "60 % (50 to 70 %)")}
-    assert drifts.rows[0][0] == SEALED[0]
-    assert drifts.rows[0][3] == "26 (20.8 to 31.2)"  # with the cause
-    assert drifts.rows[0][-1] == "26.2"
     assert blocks_of(documents["unknown"], "table", "gain")[0].header == ("Rival", "Forces")
+
+
+def test_the_report_ends_with_what_the_cause_changes(documents):
+    document = documents["named"]
+    assert [section.key for section in document.sections][-2:] == ["effect", "origin"]
+    (table,) = blocks_of(document, "table", "effect")
+    assert [row[:2] for row in table.rows[:4]] == [
+        (SEALED[0], "median of the drift [mm]"), (SEALED[0], "95 % quantile of the drift [mm]"),
+        (SEALED[0], "95 % quantile of the uplift [mm]"), (SEALED[0], "probability of collapse [%]"),
+    ]  # fmt: skip
+    assert [row[-1] for row in table.rows[:4]] == ["26.2", "26.2", "2.6", "none"]
+    without, extended = (float(table.rows[0][column].partition(" ")[0]) for column in (2, 3))
+    assert extended == pytest.approx(1.3 * without, abs=0.11)
+    (items,) = blocks_of(document, "items", "effect")
+    assert items.items[0].startswith(
+        f"{SEALED[0]}, 24 pairs of samples: eccentric mass of a block changes median"
+    )
+    assert "Not told from no change: probability of collapse." in items.items[0]
+    assert all(section.key != "effect" for section in documents["none"].sections)
 
 
 def test_without_a_cause_no_gain_is_shown(pages):

@@ -15,7 +15,12 @@ from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.simulation.simulate import simulate
 from blockshake.store import Store
 from blockshake.study.ensembles.batch import CaseRuns, simulate_samples
-from blockshake.study.ensembles.case_input import driving_motions, measured_input, measured_on_clock
+from blockshake.study.ensembles.case_input import (
+    driving_motions,
+    measured_input,
+    measured_on_clock,
+    structure_of_case,
+)
 from blockshake.study.ensembles.coverage import compared_curves
 from blockshake.study.ensembles.ensemble import join_batches
 from blockshake.virtual.settings import TableErrors
@@ -132,3 +137,24 @@ def test_a_gap_in_which_the_slab_s_motion_is_lost_is_refused_where_it_is_the_inp
     ):
         measured_input({**case, "input": "measured"}, named)
     measured_input({**case, "input": "commanded"}, named)
+
+
+def test_a_case_starts_where_the_blocks_of_its_test_stood(case, tmp_path):
+    structure, motion = load_structure(case["structure"]), load_motion(case["motion"])
+    run = simulate(structure, motion, "nscd-rigid", {}, time_step=1e-3, duration=1.0)
+    test = observe(run, structure, Instruments(), 4).assign_coords(body=["block"])
+    test["initial_offset"] = ("body", "axis"), [[0.05, -0.02, 0.0]]
+    test["initial_rotation"] = ("body", "axis"), [[0.0, 0.0, 0.03]]
+    write_dataset(tmp_path / "t1.nc", test)
+    driven = {**case, "duration": 0.5, "input": "commanded"}
+    base = measured_input(driven, {"campaign": str(tmp_path), "test": "t1"})
+    write_dataset(tmp_path / "base.nc", base)
+    rows, finished = pd.DataFrame({FRICTION: [0.5]}), []
+    for known in (None, [], base, tmp_path / "base.nc"):
+        stands = structure_of_case(driven, known)
+        moved = [0.05, -0.02, 0.0] if known else [0.0, 0.0, 0.0]
+        np.testing.assert_allclose(stands.position - structure.position, [[0.0] * 3, moved], atol=1e-12)
+        runs = CaseRuns(driven, "nscd-rigid", {"time_step": 1e-3}, {}, 200.0)
+        store = Store(tmp_path / "store", "test")
+        finished += simulate_samples(runs, driving_motions(driven, known, 1), rows, store, known)
+    assert finished[0] == finished[1] != finished[2] == finished[3]

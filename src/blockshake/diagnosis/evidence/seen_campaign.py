@@ -5,6 +5,7 @@ from typing import NamedTuple
 from blockshake.errors import InputError
 from blockshake.forces.seen.seen_test import see_test, why_unseen
 from blockshake.measurement.campaigns.open_readings import read_open_tests, read_sealed_tests
+from blockshake.measurement.campaigns.starting_places import standing
 from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.parity.correction import judged_readings
 from blockshake.parity.parity import Parity, campaign_parity
@@ -50,11 +51,12 @@ def see_sealed(campaign):
 
 
 def _seen(campaign, readings, without):
-    structure, sensors = readings.structure, campaign.sensors
+    sensors = campaign.sensors
     parity = campaign_parity(readings, sensors, without)
     tests, unseen = [], {}
     for name, test in readings.tests.items():
-        judged = judged_readings(test, name, structure, parity.findings)
+        structure = standing(readings.structure, test)
+        judged = judged_readings(test, name, readings.structure, parity.findings)
         reason = why_unseen(judged, structure)
         if reason:
             unseen[name] = reason

@@ -18,6 +18,9 @@ from blockshake.diagnosis.nominal.ensemble import (
     runs_of,
 )
 from blockshake.diagnosis.verdict.verdict import MeasuredGain
+from blockshake.dynamics.system import FALLEN, FINISHED
+from blockshake.statistics.resampling import resampled_weights
+from blockshake.study.extension.changes import quantities
 
 _STILL = "no gain was measured on the responses: no joint moves in the sealed tests"
 
@@ -45,7 +48,7 @@ def campaign_gain(plan, opened, sealed, nominal, runs):
     Returns
     -------
     CampaignGain
-        ``scores`` from `response_gain`.
+        ``scores`` from `response_gain`, and by test what the cause changes, from `_effect`.
     """
     planned = plan.tests | plan.sealed
     motions = {name: plan.campaign.tests[name].motion for name in planned}
@@ -61,8 +64,38 @@ def campaign_gain(plan, opened, sealed, nominal, runs):
     tests = [test for test in tests if test.judged.any()]
     if not tests:
         return CampaignGain(MeasuredGain(gain=None, caveats=[_STILL], runs=count), xr.Dataset())
-    scores = response_gain(tests)
+    names = [test.name for test in tests]
+    effects = xr.concat([_effect(name, runs, sealed[name]) for name in names], dim=xr.Variable("test", names))
+    scores = response_gain(tests).merge(effects)
     return CampaignGain(gain_of_verdict(scores, count), scores)
+
+
+def _effect(name, runs, measured):
+    """What the cause changes in a sealed test, by the nominal and the extended members of all solvers.
+
+    As of `quantities` along ``response``, of the drift of any block and the opening of any joint, with the number of
+    members ``paired``, and measured ``largest(response)`` [m].
+    """
+    sides, finished = [], True
+    for kind in (NOMINAL, EXTENDED):
+        own = [runs_of(one, test=name, kind=kind) for one in runs]
+        status = np.concatenate([one["status"].to_numpy() for one in own])
+        peaks = [np.concatenate(parts) for parts in zip(*map(_peaks, own), strict=True)]
+        sides.append([*peaks, np.isin(status, FALLEN)])
+        finished = finished & np.isin(status, FINISHED)
+    count = int(finished.sum())
+    weights = resampled_weights(count, np.random.default_rng([count, *name.encode()])) if count else None
+    end = max(float(one["time"][-1]) for one in own)
+    drift, uplift = map(float, _peaks(measured.sel(time=slice(None, end))))
+    found = quantities([[one[finished] for one in side] for side in sides], weights).rename(
+        quantity="response"
+    )
+    return found.assign(paired=count, largest=("response", [drift, drift, uplift, np.nan, np.nan]))
+
+
+def _peaks(histories):
+    """Largest drift of any block and opening of any joint [m], of every run where there are several."""
+    return np.abs(histories["drift"]).max(("time", "body")), histories["opening"].max(("time", "joint"))
 
 
 def with_rows(responses, rows, caveats):

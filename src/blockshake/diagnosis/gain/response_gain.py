@@ -63,9 +63,7 @@ def response_gain(tests):
     xarray.Dataset
         In units of a cell's spread ``score(kind)`` and ``floor``; ``gain``, ``gain_lower`` and ``gain_upper(rival)``
         [1], NaN where nothing is there to gain; ``confirmed``, whether each solver by itself shows half of the fall
-        against the recalibrated model or more; and along ``test`` what `JudgedTest.bands` gives, with
-        ``largest(kind, test)``, ``largest_lower`` and ``largest_upper``, median of the top's largest drift and the band
-        of the members, and ``largest_measured(test)`` [m].
+        against the recalibrated model or more; and along ``test`` what `JudgedTest.bands` gives.
 
     Notes
     -----
@@ -108,7 +106,7 @@ def response_gain(tests):
         },
         {"kind": kinds, "rival": rivals},
     )
-    shown = xr.concat([test.bands().merge(_largest(test)) for test in tests], dim="test", join="outer")
+    shown = xr.concat([test.bands() for test in tests], dim="test", join="outer")
     return scores.merge(shown.assign_coords(test=[test.name for test in tests]))
 
 
@@ -178,22 +176,3 @@ def _scale(test):
 def _ratio(fall, to_gain):
     """Fall of the score over its largest possible fall; 1 or -1 by its sign where nothing is left to gain."""
     return np.where(to_gain > 0.0, fall / np.where(to_gain > 0.0, to_gain, 1.0), np.sign(fall))
-
-
-def _largest(test):
-    """Largest drift of the top to either side in the measured time: median and band by kind, and measured [m]."""
-    of_top = test.measured["quantity"].to_numpy() == "drift"
-
-    def largest(cells):
-        return np.abs(cells.isel(cell=np.flatnonzero(of_top)[-1:])).max(("time", "cell"))
-
-    bands = [largest(one).quantile((0.05, 0.5, 0.95), dim="run") for one in test.members.values()]
-    lower, middle, upper = np.array([one.to_numpy() for one in bands]).T
-    return xr.Dataset(
-        {
-            "largest": ("kind", middle),
-            "largest_lower": ("kind", lower),
-            "largest_upper": ("kind", upper),
-            "largest_measured": float(largest(test.measured)),
-        }
-    )

@@ -1,12 +1,16 @@
-"""Fourth section of a diagnosis: what the cause means for the structure, on tests that nothing was fitted to."""
+"""Sections of a diagnosis on tests that nothing was fitted to: the gain by the cause, and what the cause changes."""
 
 import numpy as np
 
+from blockshake.diagnosis.gain.extended_model import acting_causes
 from blockshake.diagnosis.misfit.figure import add_legend, draw_history
 from blockshake.diagnosis.wording import percent_words
-from blockshake.pages.blocks import Figure, Section, Table, Text
-from blockshake.pages.drawing import BLUE, ORANGE, new_figure, svg_of
-from blockshake.pages.wording import MISSING, number, sentence_case
+from blockshake.pages.blocks import Figure, Items, Listing, Section, Table, Text
+from blockshake.pages.drawing import BLUE, GREY, ORANGE, new_figure, svg_of
+from blockshake.pages.wording import MISSING, listed, number, quantile_percent, sentence_case
+from blockshake.statistics.intervals import samples_needed
+from blockshake.study.extension.changes import HIGH
+from blockshake.study.extension.section import change_rows, change_sentence
 
 _RIVALS = {
     "nominal": "the nominal model",
@@ -14,20 +18,18 @@ _RIVALS = {
     "discrepancy": "the nominal model with a discrepancy without a name",
     "placebo": "the same cause at another place",
 }
-_KINDS = {
-    "nominal": "Without",
-    "recalibrated": "Recalibrated without",
-    "extended": "With the cause",
-    "placebo": "Cause elsewhere",
-}
 _MOST_TESTS = 3
 OF_GAIN = ("gain was measured", "nothing to gain")  # by which caveats on the gain are known
 # drift by these kinds of members, with their titles and colours
-_SHOWN = {"recalibrated": ("without the cause, recalibrated", ORANGE), "extended": ("with the cause", BLUE)}
+_SHOWN = {
+    "nominal": ("without the cause", GREY),
+    "recalibrated": ("without the cause, recalibrated", ORANGE),
+    "extended": ("with the cause", BLUE),
+}
 
 
 def gain_section(diagnosed):
-    """Gain on forces and responses against each rival, largest drift with and without the cause."""
+    """Gain on forces and responses against each rival, and the drift with and without the cause."""
     verdict, gain = diagnosed.verdict, diagnosed.gain
     title = "Gain on sealed tests"
     if verdict.gain is None and verdict.row_gain is None:
@@ -52,7 +54,7 @@ def gain_section(diagnosed):
     if gain is not None and "where" in gain.attrs:
         blocks.append(_of_sensor(gain))
     elif gain is not None:
-        blocks += [_largest(diagnosed), _drift(diagnosed)]
+        blocks.append(_drift(diagnosed))
     return Section(title, "gain", tuple(blocks))
 
 
@@ -75,28 +77,6 @@ def _gains(verdict):
         tuple(rows),
         "l" + "r" * len(columns),
     )
-
-
-def _largest(diagnosed):
-    gain = diagnosed.gain
-    kinds = [kind for kind in _KINDS if kind in gain["kind"].values]
-    rows = []
-    for test in gain["test"].values:
-        of_test = gain.sel(test=test)
-        drifts = [_with_band(of_test.sel(kind=kind)) for kind in kinds]
-        rows.append((str(test), *drifts, number(1e3 * of_test["largest_measured"])))
-    return Table(
-        "What it means for the structure: largest drift of the top against the table [mm], median of the members "
-        f"and their 5 to 95 %, and {'of the virtual test' if diagnosed.synthetic else 'measured'}.",
-        ("Test", *(_KINDS[kind] for kind in kinds), "Virtual test" if diagnosed.synthetic else "Measured"),
-        tuple(rows),
-        "l" + "r" * (len(kinds) + 1),
-    )
-
-
-def _with_band(own):
-    median, lower, upper = (number(1e3 * own[f"largest{end}"]) for end in ("", "_lower", "_upper"))
-    return f"{median} ({lower} to {upper})"
 
 
 def _drift(diagnosed):
@@ -129,6 +109,43 @@ def _of_sensor(scores):
         ("Test", *words.values(), "Floor"),
         tuple(rows),
         "lrrrr",
+    )
+
+
+def effect_section(diagnosed):
+    """What the cause changes in the sealed tests, for whoever must decide; None where no model was extended."""
+    gain = diagnosed.gain
+    if gain is None or "largest" not in gain:
+        return None
+    cause = listed([one.title for one in acting_causes(diagnosed.decision)])
+    effect = gain[["value", "value_interval", "paired", "largest"]].rename(response="quantity")
+    tests = {str(name): effect.sel(test=name) for name in effect["test"].values}
+    rows = [(name, *row) for name, of_test in tests.items() for row in change_rows(of_test)]
+    measured = "Virtual test" if diagnosed.synthetic else "Measured"
+    caption = (
+        "Largest displacement along x of any block from the table, and largest opening of any joint at the middle of "
+        "its face, of the nominal members without the cause and of the same members with it, conditioned on the open "
+        "tests, all solvers together. Limits of 95 % in brackets, by drawing the pairs again; those of a share are "
+        f"Clopper and Pearson's. Fewer than {samples_needed(HIGH)} pairs tell the limits of a "
+        f"{quantile_percent(HIGH)} quantile too narrow."
+    )
+    header = ("Test", "Quantity", "Without the cause", "With the cause", "Change", measured)
+    return Section(
+        "Effect of the cause",
+        "effect",
+        (
+            Items(tuple(change_sentence(name, cause, of_test) for name, of_test in tests.items())),
+            Table(caption, header, tuple(rows), "llrrrr"),
+            Text(
+                "Other motions and levels, more samples, and the safe level are a study with the cause in it. It is "
+                "written from the verdict of this diagnosis and the study of your decision, and run, by:"
+            ),
+            Listing(
+                "Commands",
+                "blockshake extend-study verdict.json STUDY.yaml --output extended.yaml\n"
+                "blockshake study extended.yaml",
+            ),
+        ),
     )
 
 

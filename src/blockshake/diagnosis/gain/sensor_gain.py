@@ -129,7 +129,7 @@ def _distance_less_mean(test, opened, finding, structure):
 def _residual(test, marker, structure):
     """Marker in its body's frame less where it should be, the rigid motion of all taken out, (n_times, 3)."""
     name = next(item.body for item in structure.file.markers if item.name == marker)
-    body = BodyMarkers.of(structure, name, {"": test}, test["marker"].values)
+    body = BodyMarkers.of(structure, name, {"": test}, test["marker"].values).in_test()
     residual = body.frame(body.readings[0][1]).residual
     residual[outlying(residual)] = np.nan
     return residual[:, body.markers.index(marker)]

@@ -8,6 +8,7 @@ import xarray as xr
 from blockshake.diagnosis.nominal.ensemble import NOMINAL, TWIN, runs_of
 from blockshake.diagnosis.nominal.histories import as_cells, at_readings, common_times, read_histories
 from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.starting_places import standing
 from blockshake.parity.correction import load_corrected_test
 from blockshake.statistics.intervals import sample_quantiles
 
@@ -176,9 +177,8 @@ def measured_histories(campaign, names, findings):
         Sensor faults that are taken out first.
     """
     structure = load_structure(campaign.structure)
+    tests = {name: load_corrected_test(campaign, name, structure, findings) for name in names}
     return {
-        name: read_histories(
-            load_corrected_test(campaign, name, structure, findings), structure, campaign.sensors
-        )
-        for name in names
+        name: read_histories(test, standing(structure, test), campaign.sensors)
+        for name, test in tests.items()
     }

@@ -72,14 +72,17 @@ class Plan:
     @cached_property
     def tests(self):
         """Those of them that are simulated, `PlannedTest` by name."""
-        structure = load_structure(self.campaign.structure) if self.simulated else None
-        return {name: planned_test(self.campaign, name, structure) for name in self.simulated}
+        return {name: planned_test(self.campaign, name, self._structure) for name in self.simulated}
 
     @property
     def sealed(self):
         """Sealed tests as they are simulated, by name; empty where nothing is simulated."""
         names = self.campaign.sealed if self.simulated else ()
-        return {name: planned_sealed(self.campaign, name, self.tests) for name in names}
+        return {name: planned_sealed(self.campaign, name, self.tests, self._structure) for name in names}
+
+    @cached_property
+    def _structure(self):
+        return load_structure(self.campaign.structure)
 
     @property
     def runs(self):

@@ -12,6 +12,8 @@ from blockshake.geometry.structure import Structure
 from blockshake.measurement.campaigns.campaign import Sensors, load_test
 from blockshake.measurement.campaigns.clocks import reading_rate, simulation_start, since
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
+from blockshake.measurement.campaigns.recorded_test import structure_at_start
+from blockshake.measurement.campaigns.starting_places import standing
 from blockshake.measurement.motion.fall import find_fall, until_fall
 from blockshake.measurement.sensors.markers import RATE, unread_directions
 from blockshake.store import structure_digest
@@ -41,7 +43,7 @@ class PlannedTest:
     Attributes
     ----------
     structure : Structure
-        The campaign's.
+        The campaign's, its blocks where the test found them.
     motion : GroundMotion
         Commanded, scaled.
     duration : float
@@ -102,7 +104,7 @@ def planned_test(campaign, name, structure):
     test = since(test, -late)
     time, rate = test["time"].to_numpy(), reading_rate(test["time"].to_numpy())
     return PlannedTest(
-        structure=structure,
+        structure=standing(structure, test),
         motion=planned_motion(campaign, name),
         duration=float(np.ceil(time[-1] * rate - _SAME_READING) / rate),
         sensors=campaign.sensors,
@@ -112,8 +114,10 @@ def planned_test(campaign, name, structure):
     )
 
 
-def planned_sealed(campaign, name, tests):
-    """A sealed test as it is simulated, its file unread: as long and with the sensors as an open one.
+def planned_sealed(campaign, name, tests, structure):
+    """A sealed test as it is simulated: as long and with the sensors as an open one, from where its blocks stood.
+
+    Of its file the survey alone is read, which is known before the test.
 
     ``tests``: open `PlannedTest` by name; of these the longest under the same motion, or else the longest.
     """
@@ -122,7 +126,12 @@ def planned_sealed(campaign, name, tests):
         tests, key=lambda opened: (campaign.tests[opened].motion == motion, tests[opened].duration, opened)
     )
     like = tests[like]
-    return replace(like, motion=planned_motion(campaign, name), clock=like.clock._replace(first=0.0))
+    return replace(
+        like,
+        structure=structure_at_start(campaign.folder / campaign.tests[name].file, structure),
+        motion=planned_motion(campaign, name),
+        clock=like.clock._replace(first=0.0),
+    )
 
 
 def planned_motion(campaign, name):

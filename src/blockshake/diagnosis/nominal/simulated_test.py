@@ -7,9 +7,10 @@ from scipy.ndimage import gaussian_filter1d
 from blockshake.diagnosis.nominal.histories import read_histories
 from blockshake.effects.effect import Experiment
 from blockshake.measurement.campaigns.clocks import since
+from blockshake.measurement.campaigns.starting_places import placed
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.simulation.models import part_parameters
-from blockshake.simulation.simulate import placed, simulate
+from blockshake.simulation.simulate import simulate
 from blockshake.store import load_made
 
 _SLOW = 0.04  # s, standard deviation of a Gaussian that is some 0.1 s wide at half its height

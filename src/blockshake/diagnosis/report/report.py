@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from blockshake.diagnosis.flight.report import compose_flights
-from blockshake.diagnosis.gain.section import gain_section
+from blockshake.diagnosis.gain.section import effect_section, gain_section
 from blockshake.diagnosis.misfit.section import misfit_section
 from blockshake.diagnosis.outcomes.report import compose_outcomes
 from blockshake.diagnosis.report.answer_section import answer_section
@@ -30,6 +30,7 @@ _SECTIONS = (
     misfit_section,
     limits_section,
     track_record_section,
+    effect_section,
     origin_section,
 )
 

@@ -6,6 +6,7 @@ from blockshake.forces.seen.seen_test import see_test, why_unseen
 from blockshake.geometry.schema import AXES
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_test
+from blockshake.measurement.campaigns.starting_places import standing
 from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.motion.body_poses import PLANAR, POSE, body_poses
 
@@ -21,7 +22,9 @@ def sight_lines(campaign):
     name = next(iter(campaign.open), None)
     if name is None:
         return []
-    test = without_outliers(load_test(campaign, name, structure), structure)
+    test = load_test(campaign, name, structure)
+    structure = standing(structure, test)
+    test = without_outliers(test, structure)
     start = float(test["time"][0])
     test = test.isel(time=test["time"].to_numpy() < start + _LONGEST)
     if "time_acc" in test.dims:

@@ -27,6 +27,7 @@ _VARIABLES = {
     "initial_offset": (("body", "axis"), _METRES),
     "initial_rotation": (("body", "axis"), _RADIANS),
 }
+SURVEY = {name: _VARIABLES[name] for name in _VARIABLES if "initial" in name}
 _CLASSIC = (b"CDF\x01", b"CDF\x02")  # whose missing end the netCDF library reads as zeros, and scipy refuses
 
 

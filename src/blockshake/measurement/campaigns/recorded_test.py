@@ -8,7 +8,8 @@ from blockshake.errors import InputError
 from blockshake.geometry.schema import AXES
 from blockshake.measurement.campaigns.clocks import from_first_reading, missing_rows
 from blockshake.measurement.campaigns.faulty_readings import without_faulty
-from blockshake.measurement.campaigns.reading_files import read_netcdf, read_tables
+from blockshake.measurement.campaigns.reading_files import SURVEY, read_netcdf, read_tables, read_variables
+from blockshake.measurement.campaigns.starting_places import standing, with_starting_places
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
 from blockshake.measurement.sensors.markers import driven_names, marker_position
 from blockshake.measurement.sensors.transducers import transducer_names
@@ -56,8 +57,8 @@ def read_test(path, structure):
     -------
     xarray.Dataset
         Variables of docs/guide/campaigns.md, float64; NaN along a direction that was not measured, and where a column
-        holds no readings, see `without_faulty`. All times count from the markers' first reading. The file
-        is never changed.
+        holds no readings, see `without_faulty`; ``starting_place`` beside them, see `with_starting_places`. All times
+        count from the markers' first reading. The file is never changed.
 
     Raises
     ------
@@ -71,7 +72,14 @@ def read_test(path, structure):
     test = read_tables(path, transducer_names(structure)) if table else read_netcdf(path)
     test = without_faulty(checked_test(test, structure, path), structure)
     _check_driven(test, structure, path)  # whose readings may have been faulty
-    return from_first_reading(test)
+    return from_first_reading(with_starting_places(test, structure, path))
+
+
+def structure_at_start(path, structure):
+    """The structure with its blocks where a test found them, by its survey: no reading of the test is looked at."""
+    if path.suffix.lower() == ".csv":
+        return structure
+    return standing(structure, with_starting_places(read_variables(path, SURVEY), structure, path))
 
 
 def checked_test(test, structure, path):

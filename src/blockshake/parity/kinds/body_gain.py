@@ -8,6 +8,7 @@ on it by as much the other way, also while both are closed. No friction slips so
 import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrices
+from blockshake.measurement.campaigns.starting_places import standing
 from blockshake.measurement.motion.body_poses import PLANAR, POSE, body_poses
 from blockshake.measurement.motion.joints import find_joints, joint_coordinates
 from blockshake.parity.finding import chance_within
@@ -67,7 +68,7 @@ def _slips(structure, test, sensors):
 
     None where a pose is not read.
     """
-    displacement = test["marker_displacement"]
+    displacement, structure = test["marker_displacement"], standing(structure, test)
     rest = displacement.isel(time=slice(0, _REST)).mean("time").fillna(0.0)
     every = max(1, round(_EVERY / float(np.median(np.diff(test["time"])))))
     counted = test.assign(marker_displacement=displacement - rest).isel(time=slice(None, None, every))

@@ -81,8 +81,8 @@ def _taken_out(kind, where, structure, tests, bodies):
 def _squares(body):
     """Sum of the squared residuals of all tests [m2] and the number of values that it is made of."""
     total = count = 0.0
-    for _, displacement in body.readings:
-        pose = body.frame(displacement[::_STRIDE])
+    for number, (_, displacement) in enumerate(body.readings):
+        pose = body.in_test(number).frame(displacement[::_STRIDE])
         checked = pose.projector.any(axis=(1, 2))
         if checked.any():
             residual = pose.residual[checked] - np.nanmean(pose.residual[checked], axis=0)

@@ -14,7 +14,7 @@ def _correct(test, findings, structure):
     """
     offsets = {finding.where[0]: finding.estimate for finding in findings}
     for name in structure.body_names:
-        body = BodyMarkers.of(structure, name, {"": test}, test["marker"].values)
+        body = BodyMarkers.of(structure, name, {"": test}, test["marker"].values).in_test()
         if offsets.keys().isdisjoint(body.markers):
             continue
         places = np.array([offsets.get(marker, np.zeros(3)) for marker in body.markers])

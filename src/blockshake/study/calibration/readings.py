@@ -23,6 +23,7 @@ from blockshake.study.ensembles.case_input import (
     driving_motions,
     measured_input,
     measured_on_clock,
+    structure_of_case,
 )
 from blockshake.study.sampling.sample_parameters import sample_parameters
 
@@ -102,7 +103,7 @@ def simulate_readings(test, model, settings, rows, time_steps, ensemble, store):
     list of Path or None
         By sample; none for a run that ended for a numerical reason.
     """
-    case, structure = test.case, load_structure(test.case["structure"])
+    case, structure = test.case, structure_of_case(test.case, test.base)
     identity = structure_digest(structure)
     motions = driving_motions(case, test.base, ensemble["seed"])
     found = []

@@ -5,12 +5,12 @@ from typing import NamedTuple
 import pandas as pd
 
 from blockshake.errors import InputError
-from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.markers import driven_marker
 from blockshake.simulation.models import solver_of
 from blockshake.simulation.run_histories import joint_figures
 from blockshake.simulation.simulate import simulate
 from blockshake.store import structure_digest
+from blockshake.study.ensembles.case_input import structure_of_case
 from blockshake.study.ensembles.ensemble import DECIMALS, run_as_sample
 from blockshake.study.sampling.sample_parameters import sample_parameters
 from blockshake.study.sampling.sample_table import load_design
@@ -47,7 +47,7 @@ class CaseRuns(NamedTuple):
         return self.settings.get("parameters", {}) | sample_parameters(row, structure, self.linked)
 
 
-def simulate_samples(runs, motions, rows, store):
+def simulate_samples(runs, motions, rows, store, base=None):
     """Ensembles of one sample each, simulated where the store has not got them.
 
     Parameters
@@ -58,6 +58,8 @@ def simulate_samples(runs, motions, rows, store):
     rows : pandas.DataFrame
         Sampled values, index the sample, contact stiffness included.
     store : Store
+    base : xarray.Dataset, path or None
+        From `measured_input`, where the case names a measured test: the blocks start where they stood in it.
 
     Returns
     -------
@@ -67,7 +69,7 @@ def simulate_samples(runs, motions, rows, store):
     """
     case, model, settings, _, output_rate = runs
     solver = solver_of(model).name
-    structure = load_structure(case["structure"])
+    structure = structure_of_case(case, base)
     identity = structure_digest(structure)
     finished = []
     for sample, row in rows.iterrows():

@@ -13,6 +13,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.campaigns.clocks import since
 from blockshake.measurement.campaigns.commanded_motion import follow
+from blockshake.measurement.campaigns.starting_places import standing
 from blockshake.measurement.motion.measured_base import base_as_motion, draw_base, measure_base
 from blockshake.measurement.sensors.markers import driven_marker, unread_directions
 from blockshake.store import load_made
@@ -38,7 +39,7 @@ def measured_input(case, named):
     xarray.Dataset
         From `measure_base`, and the attributes ``test``, ``synthetic``, ``gain``, the regression of the slab's
         displacement along x on the command in the simulated window [1], and ``departure``, the root mean square of
-        their difference [m]; both NaN where the slab does not follow.
+        their difference [m]; both NaN where the slab does not follow. ``starting_place`` as the test has it.
 
     Raises
     ------
@@ -56,7 +57,16 @@ def measured_input(case, named):
         check_known(base, case["duration"], named["test"])
     base.attrs |= {"test": named["test"], "synthetic": int(test.attrs.get("synthetic", 0))}
     base.attrs |= dict(zip(("gain", "departure"), _against(base, command, case["duration"]), strict=True))
-    return base
+    return base.assign(starting_place=test["starting_place"]) if "starting_place" in test else base
+
+
+def structure_of_case(case, base):
+    """Structure of a case, its blocks where the test stood that it is compared with.
+
+    ``base``: from `measured_input`, or its file; none where the case names no test.
+    """
+    structure = load_structure(case["structure"])
+    return standing(structure, _loaded(base)) if base else structure
 
 
 def commanded(case):

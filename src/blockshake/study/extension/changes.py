@@ -78,7 +78,9 @@ def changes(ensembles, measured):
         seed = int(content_digest("changes", model, str(pair[1].attrs.get("structure"))), 16)
         weights = resampled_weights(len(common), np.random.default_rng(seed)) if len(common) else None
         parts.append(
-            _quantities(both, weights).merge(_gain(both, measured, weights)).assign(paired=len(common))
+            quantities(map(_responses, both), weights)
+            .merge(_gain(both, measured, weights))
+            .assign(paired=len(common))
         )
     result = xr.concat(parts, dim=xr.Variable("model", list(ensembles)))
     describe(result, _DESCRIBED)
@@ -101,15 +103,18 @@ def _safe(fragility):
     return float(fragility["safe_scale"]), *limits
 
 
-def _quantities(both, weights):
-    """Quantities of both ensembles and their change, NaN without samples; the safe scale apart."""
+def quantities(sides, weights):
+    """Quantities of `changes` of pairs of samples, their change and limits, NaN without samples; the safe scale apart.
+
+    ``sides``: without and with the cause, each its largest drift and uplift [m] and whether it fell, by sample;
+    ``weights``: of `resampled_weights`, None without samples.
+    """
     rows = np.full((len(QUANTITIES), len(SIDES), 3), np.nan)
     if weights is not None:
-        drift, uplift = zip(*map(_largest, both), strict=True)
+        drift, uplift, fell = zip(*sides, strict=True)
         for row, (values, share) in enumerate([(drift, 0.5), (drift, HIGH), (uplift, HIGH)]):
             drawn = [_drawn_quantiles(one, weights, share) for one in values]
             rows[row] = [(one[0], *limits_of(one[1:])) for one in (*drawn, drawn[1] - drawn[0])]
-        fell = [np.isin(one["status"].values, FALLEN) for one in both]
         alone = [_share(fell[0] & ~fell[1]), _share(fell[1] & ~fell[0])]
         rows[3] = [*map(_share, fell), _difference(*alone)]
     dims = ("quantity", "side")
@@ -119,10 +124,10 @@ def _quantities(both, weights):
     )
 
 
-def _largest(ensemble):
-    """Largest drift of any block's marker from the slab, and uplift of any joint, by sample [m]."""
-    drift = ensemble["peak"].sel(frame="slab").max("marker")
-    return drift.to_numpy(), ensemble["joint_uplift"].max("joint").to_numpy()
+def _responses(ensemble):
+    """Largest drift of any block's marker from the slab and uplift of any joint [m], and who fell, by sample."""
+    drift, uplift = ensemble["peak"].sel(frame="slab").max("marker"), ensemble["joint_uplift"].max("joint")
+    return drift.to_numpy(), uplift.to_numpy(), np.isin(ensemble["status"].values, FALLEN)
 
 
 def _drawn_quantiles(values, weights, share):

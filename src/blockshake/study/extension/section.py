@@ -53,23 +53,24 @@ def _table(content, pairs):
 
 
 def _known(result):
-    """Model and quantity of all changes that are known, with the entries of both."""
-    for model in result["model"].values:
-        for quantity in QUANTITIES:
-            at = result.sel(model=model, quantity=quantity)
-            if np.isfinite(at["value"]).all():
-                yield model, quantity, at
+    """Words of all quantities of one model that are known, how they are shown, and the entries of both."""
+    for quantity in QUANTITIES:
+        at = result.sel(quantity=quantity)
+        if np.isfinite(at["value"]).all():
+            yield *_WORDS[quantity], at
 
 
 def _rows(result, name):
-    for model, quantity, at in _known(result):
-        words, show = _WORDS[quantity]
-        yield (
-            name,
-            model_label(model),
-            words,
-            *(_limited(at.sel(side=side), "value", show) for side in SIDES),
-        )
+    for model in result["model"].values:
+        for row in change_rows(result.sel(model=model)):
+            yield name, model_label(model), *row
+
+
+def change_rows(result):
+    """Rows of the known quantities: words, without and with the cause, change, and measured if there is ``largest``."""
+    for words, show, at in _known(result):
+        measured = [show(at["largest"])] if "largest" in at else []
+        yield words, *(_limited(at.sel(side=side), "value", show) for side in SIDES), *measured
 
 
 def _limited(at, name, show):
@@ -77,24 +78,28 @@ def _limited(at, name, show):
 
 
 def sentences(content, name):
-    """Sentences for whoever must decide, a model each: which quantities the cause changes beyond their limits."""
+    """Sentences for whoever must decide, a model each."""
     result, cause = content.changes[name], content.cases[name].structure.file.extension
     for model in result["model"].values:
-        told, silent = [], []
-        for of, quantity, at in _known(result):
-            (words, show), change = _WORDS[quantity], at.sel(side="change")
-            low, high = change["value_interval"].values
-            if of == model and (low > 0.0 or high < 0.0):
-                both = " to ".join(show(value) for value in at["value"].values[:2])
-                told.append(f"{words} from {both}, by {_limited(change, 'value', show)}")
-            elif of == model:
-                silent.append(words.partition(" [")[0])
-        count = int(result["paired"].sel(model=model))
-        yield (
-            f"{name}, {model_label(model)}, {count} pairs of samples: {cause} changes "
-            f"{'; '.join(told) or 'nothing beyond its limits'}."
-            + (f" Not told from no change: {', '.join(silent)}." if silent else "")
-        )
+        yield change_sentence(f"{name}, {model_label(model)}", cause, result.sel(model=model))
+
+
+def change_sentence(of, cause, result):
+    """Which quantities of a model a cause changes beyond their limits, and which not."""
+    told, silent = [], []
+    for words, show, at in _known(result):
+        change = at.sel(side="change")
+        low, high = change["value_interval"].values
+        if low > 0.0 or high < 0.0:
+            both = " to ".join(show(value) for value in at["value"].values[:2])
+            told.append(f"{words} from {both}, by {_limited(change, 'value', show)}")
+        else:
+            silent.append(words.partition(" [")[0])
+    return (
+        f"{of}, {int(result['paired'])} pairs of samples: {cause} changes "
+        f"{'; '.join(told) or 'nothing beyond its limits'}."
+        + (f" Not told from no change: {', '.join(silent)}." if silent else "")
+    )
 
 
 def _figure(case, nominal):
