@@ -115,7 +115,7 @@ def content_of(study):
     if not Path("reports", f"{study}.html").is_file():
         return None
     config = load_config(DEFAULT.with_name(f"{study}.yaml")).model_dump(mode="json")
-    return load_content(config, Path("results", study), Path("logs", study))
+    return load_content(config, Path("results", study))
 
 
 def statements(study):

@@ -9,8 +9,9 @@ run alone. The time of the whole study is that in which jobs ran, starts and imp
 import re
 from pathlib import Path
 
+from timing import read_cost
+
 from blockshake.files import file_digest
-from blockshake.log import read_cost
 
 HEADER = ("part", "runs", "estimated [min]", "taken [min]", "taken over estimated", "digest of the result")
 # logs of the jobs and result, by kind of part

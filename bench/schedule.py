@@ -14,10 +14,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import mean
 
+from timing import read_cost
+
 from blockshake.diagnosis.nominal.nominal_model import MODELS
 from blockshake.diagnosis.nominal.plan import plan_diagnosis
 from blockshake.files import HOME
-from blockshake.log import read_cost
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.simulation.models import solver_of
 from blockshake.study.ensembles.batch import HALF_STEP

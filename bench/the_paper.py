@@ -6,9 +6,11 @@ the same, false where it does not, None where it cannot tell. Statements that no
 
 from dataclasses import replace
 from itertools import combinations
+from pathlib import Path
 
 import numpy as np
 from scipy.stats import pearsonr, spearmanr
+from timing import read_timings
 
 from blockshake.geometry.reference_block import reference_body
 from blockshake.geometry.structure import load_structure
@@ -90,8 +92,14 @@ def conserves(content):
 def dear_steps(content):
     """Few steps, each of them dear."""
     words, dearer = [], []
+    samples = {
+        (model, name): one.samples
+        for name, case in content.cases.items()
+        for model, one in case.responses.items()
+    }
+    timings = read_timings(Path("logs", content.study["name"]), samples)
     for name in content.cases:
-        cost = {one.model: one.cpu_per_simulated for one in content.timings if one.case == name}
+        cost = {one.model: one.cpu_per_simulated for one in timings if one.case == name}
         steps = {
             model: cost[model] * content.study["models"][model]["time_step"] for model in (_SOFT, _RIGID)
         }

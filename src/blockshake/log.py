@@ -17,19 +17,11 @@ from blockshake.errors import BAD_INPUT, INTERRUPTED, InputError, one_line
 from blockshake.working_folder import end_with_command, interrupt_jobs
 
 _VERSIONS = ("numpy", "numba", "scipy", "xarray")
-_COST = re.compile(r"^Took ([\d.]+) s, ([\d.]+) CPU s\.$", re.MULTILINE)
 _REASON = re.compile(r"^Ended with exit code (\d+): (.*)$", re.MULTILINE)
 _JOB_FAILED = "job_error"  # Snakemake's event
 _GRACE = 10.0  # s; for running jobs to keep their checkpoints
 _SHOWN = 5  # failed jobs in the last lines
 _UNKNOWN = "the job ended without a word, as one does that is killed or whose modules cannot be imported"
-
-
-class Cost(NamedTuple):
-    """Cost of a job, without its imports [s]."""
-
-    wall_time: float
-    cpu_time: float
 
 
 class Reason(NamedTuple):
@@ -45,8 +37,8 @@ def logging_to(path):
 
     Yields a function that says one line of progress, in the log and on the terminal. Python warnings and logging go to
     the log; so does the traceback of an error, which is raised on, but for bad input: that ends the job with one line
-    and exit code 2. The last lines are the reason of a failure, see `read_reason`, and what the block cost, see
-    `read_cost`. The job ends with the command that started it.
+    and exit code 2. The last lines are the reason of a failure, see `read_reason`, and what the block cost in
+    time and CPU time [s]. The job ends with the command that started it.
     """
     end_with_command()
     before = os.times()
@@ -84,16 +76,6 @@ def logging_to(path):
         finally:
             root.removeHandler(handler)
             log.write(_cost_since(before))
-
-
-def read_cost(path):
-    """`Cost` in the log of a job; None where the job was killed or has no log.
-
-    The CPU time is that of the job's process and of the programs that the process started and waited for. Snakemake's
-    own benchmarks look every 30 s at a job of more than 15 s, and lose the CPU time after the last look.
-    """
-    numbers = _last(_COST, path)
-    return Cost(*map(float, numbers)) if numbers else None
 
 
 def read_reason(path):

@@ -61,7 +61,7 @@ def _document(name):
     drawn = Figure(
         name,
         svg_of(_plot, name),
-        interactive=json.dumps({"data": [{"y": [1, 2], "name": name}], "layout": {}}),
+        moving=json.dumps({"samples": [{"label": name}]}),
     )
     facts = {field.name: name for field in dataclasses.fields(Box) if field.init}
     blocks = (

@@ -133,14 +133,14 @@ def fake(tmp_path_factory):
 def report(fake, tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     paths = folder / "fake.html", folder / "fake.pdf"
-    make_report(fake.study, fake.results, fake.logs, *paths)
+    make_report(fake.study, fake.results, *paths)
     return paths
 
 
 @pytest.fixture(scope="session")
 def document(fake):
     """Composed a second time from the same files."""
-    return compose(load_content(fake.study, fake.results, fake.logs))
+    return compose(load_content(fake.study, fake.results))
 
 
 @pytest.fixture

@@ -72,7 +72,7 @@ class FakeStudy:
 
     def __init__(self, folder, size=10, duration=2.0, rate=50.0):
         self.folder, self.size = Path(folder), size
-        self.results, self.logs = self.folder / "results", self.folder / "logs"
+        self.results, self.logs = self.folder / "results", self.folder / "logs" / "fake"
         self.time = np.arange(round(duration * rate) + 1) / rate
         names = ("configuration-1", "configuration-4")
         self.study = {

@@ -17,8 +17,10 @@ MODULUS = "materials.concrete.youngs_modulus"
 
 
 @pytest.fixture
-def paper(monkeypatch):
+def paper(fake, monkeypatch):
+    """The judges, where the logs of the made-up study's jobs lie."""
     monkeypatch.syspath_prepend(str(HOME / "bench"))
+    monkeypatch.chdir(fake.logs.parents[1])
     import the_paper
 
     yield the_paper
@@ -29,7 +31,7 @@ def paper(monkeypatch):
 def loaded(fake):
     """Content of the made-up study by its models of rigid blocks alone."""
     models = {name: {**fake.study["models"][name], "parameters": {}} for name in (SOFT, RIGID)}
-    return load_content({**fake.study, "models": models}, fake.results, fake.logs)
+    return load_content({**fake.study, "models": models}, fake.results)
 
 
 @pytest.fixture

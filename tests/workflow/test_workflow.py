@@ -15,7 +15,6 @@ from made_up_decision import made_up_cause
 from blockshake.cli import main
 from blockshake.diagnosis.verdict.verdict import Misfit, Verdict, write_verdict
 from blockshake.files import PACKAGE, load_yaml
-from blockshake.log import read_cost
 from blockshake.working_folder import hold
 
 ROOT = PACKAGE.parents[1]
@@ -70,7 +69,7 @@ def test_every_simulating_rule_leaves_a_log_with_its_cost(finished):
         batch = f"small/simulate_batch/{model}/configuration-1/000-004"
         log = finished.folder / "logs" / f"{batch}.log"
         assert "numba" in log.read_text()
-        assert read_cost(log).cpu_time > 0.0
+        assert log.read_text().endswith(" CPU s.\n")
 
 
 def test_report_of_one_case_needs_its_results_alone(finished):

@@ -12,7 +12,6 @@ rule make_report:
     params:
         study=CHECKED.model_dump(mode="json"),
         results="results/{study}",
-        logs="logs/{study}",
         said=said(lambda wildcards: files_of_report()),
         source=source_of("make_report"),
     script:
@@ -34,7 +33,6 @@ rule make_case_report:
         study=CHECKED.model_dump(mode="json"),
         case="{case}",
         results="results/{study}",
-        logs="logs/{study}",
         said=said(lambda wildcards: files_of_report(wildcards.case)),
         source=source_of("make_case_report"),
     script:

@@ -3,4 +3,4 @@ from blockshake.study.report.report import make_case_report
 
 with logging_to(snakemake.log[0]):
     of, made = snakemake.params, snakemake.output
-    make_case_report(of.study, of.case, of.results, of.logs, made.html, made.pdf)
+    make_case_report(of.study, of.case, of.results, made.html, made.pdf)

@@ -52,14 +52,13 @@ class Table:
 class Figure:
     """A drawing as SVG text, ``width`` [m] in print; ``number`` counts the figures of the document.
 
-    ``interactive``: JSON of a plotly figure, or of blocks that move under ``moving``, that stands for the drawing on a
-    screen; empty where the drawing stands.
+    ``moving``: JSON of blocks that move, which stand for the drawing on a screen; empty where the drawing stands.
     """
 
     caption: str
     svg: str
     width: float = PAGE_WIDTH
-    interactive: str = ""
+    moving: str = ""
     number: int = 0
     kind: str = field(default="figure", init=False)
 

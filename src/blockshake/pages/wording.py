@@ -83,6 +83,14 @@ def quantile_range(values, show):
     return " / ".join(show(values.sel(quantile=one)) for one in SHOWN_QUANTILES)
 
 
+def limited(found, name, show=number):
+    """Number of a Dataset with its limits in ``NAME_interval(bound)``, ``3.0 [2.5, 3.4]``; alone where it has none."""
+    value, limits = float(found[name]), found[f"{name}_interval"].sel(bound=["lower", "upper"]).to_numpy()
+    if np.isnan(value) or np.isnan(limits).any():
+        return show(value) if np.isfinite(value) else MISSING
+    return f"{show(value)} [{', '.join(show(one) if np.isfinite(one) else 'no limit' for one in limits)}]"
+
+
 def share_words(count, total):
     """Some of a number: ``3 of 5``.
 

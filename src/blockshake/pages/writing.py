@@ -7,7 +7,6 @@ from importlib.resources import files
 
 import jinja2
 import typst
-from plotly.offline import get_plotlyjs
 
 from blockshake.files import replacing, write_text
 from blockshake.pages.blocks import PAGE_WIDTH
@@ -24,11 +23,8 @@ def write_html(path, document):
     )
     template = environment.get_template("report.html.j2")
     blocks = [block for section in document.sections for block in section.blocks]
-    library = get_plotlyjs() if any(getattr(block, "interactive", "") for block in blocks) else ""
-    rendered = template.render(
-        document=document, picture=_picture, embedded=_embedded, library=jinja2.filters.Markup(library)
-    )
-    write_text(path, rendered)
+    moves = any(getattr(block, "moving", "") for block in blocks)
+    write_text(path, template.render(document=document, picture=_picture, embedded=_embedded, moves=moves))
 
 
 def _embedded(text):

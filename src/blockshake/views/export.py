@@ -8,9 +8,8 @@ from blockshake.files import AnyPath, check_output
 from blockshake.simulation.load_run import RunSource, load_run
 from blockshake.simulation.run_histories import run_histories
 from blockshake.views.gltf import write_glb
-from blockshake.views.local_origin import local_origin
 from blockshake.views.tables import write_tables
-from blockshake.views.vtkhdf import write_vtkhdf
+from blockshake.views.vtkhdf import local_origin, write_vtkhdf
 
 _log = logging.getLogger(__name__)
 FORMATS = {".csv": "tables", ".vtkhdf": "ParaView", ".glb": "glTF"}

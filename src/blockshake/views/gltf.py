@@ -7,7 +7,7 @@ from trimesh.visual.material import PBRMaterial
 
 from blockshake.files import replacing
 from blockshake.pages.scene.bodies import body_colors
-from blockshake.views.local_origin import local_origin
+from blockshake.views.vtkhdf import local_origin
 
 _UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, 1.0, 0], [0, -1.0, 0, 0], [0, 0, 0, 1.0]])  # glTF's y is up
 _FLOAT = 5126  # glTF 2.0, section 3.6.2.2: a component of 32 bits

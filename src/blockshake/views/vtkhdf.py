@@ -10,12 +10,23 @@ import numpy as np
 from blockshake.files import check_output, replacing
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.simulation.run_histories import JOINT_HISTORIES
-from blockshake.views.local_origin import local_origin
 
 _VERSION = np.array([2, 2], dtype=np.int64)  # of the file format
 # of the cells of polygonal data, in the order of their numbers
 _KINDS = ("Vertices", "Lines", "Polygons", "Strips")
 _INT, _REAL = "i8", "f4"
+_FARTHEST = 100.0  # m: coordinates of 32 bits within this are exact to 4 micrometres
+
+
+def local_origin(run):
+    """Place that exports of a run in 32 bits count from, float64 (3,) [m].
+
+    It is the middle of the mass centres at the start, in whole metres, along every axis on which one of them lies more
+    than 100 m from the origin; else 0.
+    """
+    start = run["position"].isel(time=0).to_numpy()
+    middle = np.round(0.5 * (start.min(axis=0) + start.max(axis=0)))
+    return np.where(np.abs(start).max(axis=0) > _FARTHEST, middle, 0.0)
 
 
 def write_vtkhdf(path, run, histories, structure):

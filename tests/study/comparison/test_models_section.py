@@ -14,7 +14,7 @@ FIRST, LAST = "configuration-1", "configuration-4"
 
 @pytest.fixture
 def content(fake):
-    return load_content(fake.study, fake.results, fake.logs)
+    return load_content(fake.study, fake.results)
 
 
 def test_every_block_has_its_numbers_by_every_model(content):
@@ -63,10 +63,10 @@ def test_pairs_beyond_chance_are_counted(content):
 def test_a_study_without_tests_has_no_scores_and_one_of_one_model_no_section(fake, content):
     untested = {**fake.study, "cases": [{**case, "measured": None} for case in fake.study["cases"]]}
     assert "scores" in [block.key for block in models(content).blocks if block.kind == "heading"]
-    section = models(load_content(untested, fake.results, fake.logs))
+    section = models(load_content(untested, fake.results))
     assert "scores" not in [block.key for block in section.blocks if block.kind == "heading"]
     alone = {**fake.study, "models": {"ls-dem": fake.study["models"]["ls-dem"]}}
-    assert models(load_content(alone, fake.results, fake.logs)) is None
+    assert models(load_content(alone, fake.results)) is None
 
 
 PRINTED = "ls-dem-as-printed"
@@ -83,7 +83,7 @@ def printed(tmp_path, monkeypatch):
 
 
 def test_every_departure_has_its_price_by_configuration_in_one_table(printed):
-    content = load_content(printed.study, printed.results, printed.logs)
+    content = load_content(printed.study, printed.results)
     table = other_settings_table(content)
     assert [row[:3] for row in table.rows] == [(name, "LS-DEM as printed", "10") for name in (FIRST, LAST)]
     at = content.cases[FIRST].differences.sel(marker="block-3-face")

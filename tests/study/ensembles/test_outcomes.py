@@ -8,7 +8,6 @@ from blockshake.study.ensembles.outcomes import (
     shortfall,
     unfinished,
 )
-from blockshake.study.ensembles.timing import Timing, total_timing
 
 STATUS = ["completed", "collapsed", "not-converged", "completed", "falling"]
 
@@ -51,12 +50,3 @@ def test_shortfall_begins_where_a_counted_sample_has_no_value():
     assert shortfall(envelope) == (3, 1, 1.0, 1)
     whole = envelope.assign(contributing=("time", [3, 3, 3, 3]))
     assert np.isnan(shortfall(whole).since)
-
-
-def test_total_cost_is_of_those_that_are_known():
-    known = Timing("ls-dem", "a", 2, 8, 16.0, 32.0, 40.0)
-    unknown = Timing("ls-dem", "b", 0, 0, 0.0, np.nan, np.nan)
-    total = total_timing([known, unknown, known])
-    assert (total.jobs, total.samples, total.simulated, total.cpu_time) == (4, 16, 32.0, 64.0)
-    assert total.cpu_per_simulated == 2.0
-    assert np.isnan(unknown.cpu_per_simulated)

@@ -18,7 +18,7 @@ NAME = "configuration-1-extended"
 @pytest.fixture(scope="module")
 def content(fake):
     """Content with a case of configuration 1 that a made-up cause lets drift by 2 mm less."""
-    loaded = load_content(fake.study, fake.results, fake.logs)
+    loaded = load_content(fake.study, fake.results)
     case = loaded.cases["configuration-1"]
     worn = case.structure.with_parameters({"extension": "worn edges"})
     ensembles = {model: [_ensemble(fake, case, model)] * 2 for model in ("ls-dem", "nscd-rigid")}

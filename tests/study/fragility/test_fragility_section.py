@@ -13,7 +13,7 @@ CASE = "configuration-1"
 
 @pytest.fixture(scope="module")
 def content(fake):
-    return load_content(fake.study, fake.results, fake.logs)
+    return load_content(fake.study, fake.results)
 
 
 def with_fragility(content, **variables):

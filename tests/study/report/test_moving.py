@@ -16,7 +16,7 @@ from blockshake.study.report.moving import (
 
 @pytest.fixture(scope="module")
 def case(fake):
-    return load_content(fake.study, fake.results, fake.logs, "configuration-4").cases["configuration-4"]
+    return load_content(fake.study, fake.results, "configuration-4").cases["configuration-4"]
 
 
 def unpacked(packed, shape):
@@ -25,7 +25,7 @@ def unpacked(packed, shape):
 
 
 def test_page_has_the_motion_of_the_files(case):
-    moving = json.loads(moving_samples(case))["moving"]
+    moving = json.loads(moving_samples(case))
     shown = case.responses["ls-dem"].shown
     bodies = len(case.structure.mass)
     first = unpacked(moving["samples"][0]["shift"], (moving["frames"], bodies, 3))
@@ -36,7 +36,7 @@ def test_page_has_the_motion_of_the_files(case):
 
 
 def test_samples_are_named_with_their_model_and_their_end(case):
-    labels = [one["label"] for one in json.loads(moving_samples(case))["moving"]["samples"]]
+    labels = [one["label"] for one in json.loads(moving_samples(case))["samples"]]
     assert labels[0].startswith("LS-DEM, sample 4: median, ")
     assert sum("the only sample" in one for one in labels) == 1  # of elastic NSCD
     assert any(one.endswith("collapsed at 1 s") for one in labels) == any(
@@ -49,7 +49,7 @@ def test_marker_that_nobody_read_is_not_shown(case):
     blind = read.where((read["marker"] != "top-face") | (read["time"] < 0.5))
     test = case.test.assign(marker_displacement=blind)
     row = list(test["marker"].values).index("top-face")
-    moving = json.loads(moving_samples(type(case)(**{**vars(case), "test": test})))["moving"]
+    moving = json.loads(moving_samples(type(case)(**{**vars(case), "test": test})))
     shift = unpacked(moving["measured"]["shift"], (moving["frames"], test.sizes["marker"], 3))
     assert np.isfinite(shift[0, row]).all()
     assert np.isnan(shift[-1, row]).all()
@@ -66,6 +66,6 @@ def test_still_has_a_panel_for_every_model_with_markers(case):
 
 def test_case_without_a_test_has_blocks_alone(fake):
     study = {**fake.study, "cases": [{**case, "measured": None} for case in fake.study["cases"]]}
-    untested = load_content(study, fake.results, fake.logs, "configuration-1").cases["configuration-1"]
-    assert json.loads(moving_samples(untested))["moving"]["measured"] is None
+    untested = load_content(study, fake.results, "configuration-1").cases["configuration-1"]
+    assert json.loads(moving_samples(untested))["measured"] is None
     assert not any(axes.lines for axes in plot_still(untested).axes)

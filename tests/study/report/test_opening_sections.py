@@ -8,7 +8,7 @@ from blockshake.study.report.opening_sections import motions, probability_table,
 
 
 def test_a_structure_of_two_cases_is_shown_once(fake):
-    found = load_content(fake.study, fake.results, fake.logs)
+    found = load_content(fake.study, fake.results)
     found.cases["stronger"] = replace(found.cases["configuration-1"], name="stronger")
     blocks = structures(found).blocks
     headings = [block.text for block in blocks if isinstance(block, Heading)]
@@ -17,7 +17,7 @@ def test_a_structure_of_two_cases_is_shown_once(fake):
 
 
 def test_a_record_is_said_with_its_format_and_baseline(fake):
-    found = load_content(fake.study, fake.results, fake.logs)
+    found = load_content(fake.study, fake.results)
     name = next(iter(found.motions))
     record = {"source": "r.AT2", "format": "PEER NGA AT2", "baseline": "corrected, not at rest"}
     found.motions[name] = found.motions[name].assign_attrs(synthetic=0, **record)
@@ -26,7 +26,7 @@ def test_a_record_is_said_with_its_format_and_baseline(fake):
 
 
 def test_collapse_and_quantiles_are_those_of_the_files_with_limits(fake):
-    content = load_content(fake.study, fake.results, fake.logs)
+    content = load_content(fake.study, fake.results)
     table = probability_table(content)
     rows = {row[:2]: row[2:] for row in table.rows}
     # one collapsed and one failed of six: 1 of 5 counts; Clopper and Pearson's limits of 1 and of 2 of 6

@@ -19,7 +19,7 @@ FIRST, FOURTH = "configuration-1", "configuration-4"
 
 @pytest.fixture
 def content(fake):
-    return load_content(fake.study, fake.results, fake.logs)
+    return load_content(fake.study, fake.results)
 
 
 def parts(content):

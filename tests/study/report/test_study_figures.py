@@ -1,6 +1,3 @@
-import base64
-import json
-
 import matplotlib
 import numpy as np
 import pytest
@@ -11,7 +8,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.scene.structure_picture import plot_understood
 from blockshake.simulation.models import MODELS
-from blockshake.study.ensembles.displacement_figure import interactive_displacements, plot_displacements
+from blockshake.study.ensembles.displacement_figure import plot_displacements
 from blockshake.study.report.content import load_content
 from blockshake.study.report.motion_figure import plot_spectra
 from blockshake.study.sampling.section import bin_count
@@ -19,7 +16,7 @@ from blockshake.study.sampling.section import bin_count
 
 @pytest.fixture(scope="module")
 def case(fake):
-    return load_content(fake.study, fake.results, fake.logs).cases["configuration-4"]
+    return load_content(fake.study, fake.results).cases["configuration-4"]
 
 
 def drawn(case, markers, frame):
@@ -49,23 +46,6 @@ def test_curves_are_those_of_the_files_in_mm(case, frame):
     np.testing.assert_array_equal(upper, 1e3 * envelope["marker_envelope"].sel(bound="upper"))
     np.testing.assert_array_equal(measured, 1e3 * case.measured["displacement"].sel(**at))
     assert axes.lines[2].is_dashed()
-
-
-def test_curves_to_zoom_into_are_those_of_the_drawing(case):
-    """Five traces a panel, the last one measured; the names of the axes are plotly's."""
-    envelopes = {model: one.envelope for model, one in case.responses.items()}
-    markers = ["top-face", "wall-b-4-face"]
-    text = interactive_displacements(envelopes, case.measured, markers, markers, "slab", synthetic=True)
-    data, layout = json.loads(text).values()
-    assert len(data) == 5 * 2 * 4
-    assert {"xaxis", "yaxis", "xaxis8", "yaxis8"} < layout.keys()
-    last, at = data[-1], {"frame": "slab", "marker": "wall-b-4-face"}
-    assert (last["name"], last["xaxis"], last["yaxis"]) == ("virtual test (synthetic)", "x8", "y8")
-    measured = case.measured["displacement"].sel(**at)
-    shown = np.frombuffer(base64.b64decode(last["y"]["bdata"]), dtype="<f4")
-    times = last["x0"] + last["dx"] * np.arange(len(shown))
-    expected = 1e3 * measured.interp(time=np.minimum(times, float(measured["time"][-1])))
-    np.testing.assert_allclose(shown, expected, rtol=1e-4, atol=1e-4)
 
 
 def test_legend_calls_a_virtual_test_synthetic(case):

@@ -106,7 +106,7 @@ def test_variables_that_share_an_index_are_named(shared, words):
 
 def test_how_many_samples_an_index_rests_on_stands_beside_it(fake):
     """Of the made-up configuration 4 by rigid NSCD one of six samples collapsed and one failed."""
-    content = load_content(fake.study, fake.results, fake.logs)
+    content = load_content(fake.study, fake.results)
     (told,) = [block.items for block in sensitivities(content).blocks if block.kind == "items"]
     few = "configuration-4 by NSCD rigid (6 samples, of which 4 for the history, 5 for the peak)"
     (words,) = [words for words in told if few in words]

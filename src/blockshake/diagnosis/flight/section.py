@@ -1,4 +1,4 @@
-"""Sections of the report on filmed flights."""
+"""The report on filmed flights, and its sections."""
 
 import numpy as np
 
@@ -6,10 +6,12 @@ from blockshake.diagnosis.answer.answer import ODDS
 from blockshake.diagnosis.flight.causes import CAUSES
 from blockshake.diagnosis.flight.decide import estimate_in_si
 from blockshake.diagnosis.flight.figure import plot_accelerations, plot_errors
+from blockshake.diagnosis.verdict.found import document, load_found
 from blockshake.diagnosis.wording import percent_words, times_words
+from blockshake.geometry.structure import load_structure
 from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import BLUE, GREEN, GREY, ORANGE, svg_of
-from blockshake.pages.wording import MISSING, number, sentence_case
+from blockshake.pages.wording import MISSING, count_words, number, sentence_case
 
 _MODELS = {"nominal": GREY, "recalibrated": ORANGE, "discrepancy": GREEN, "extended": BLUE}
 TITLES = {cause.name: cause.title for cause in CAUSES}
@@ -19,6 +21,16 @@ _WORDS = {
     "discrepancy": "recalibrated, with a steady acceleration without a name",
     "extended": "with the causes, recalibrated",
 }
+
+
+def compose_flights(campaign, results, effort):
+    """`Document` of the diagnosis of a campaign without base motion, from the folder of its results."""
+    found = load_found(results)
+    tests = count_words(len(found.decision.tests), "test")
+    subtitle = f"{load_structure(campaign.structure).file.name} over a ground at rest, {tests}"
+    sections = [section(found) for section in (answer_section, gain_section, impacts_section)]
+    sections.append(odds_section(found.decision, TITLES, "free flights"))
+    return document(campaign, effort, found, subtitle, sections)
 
 
 def answer_section(found):

@@ -71,7 +71,7 @@ def campaign_gain(plan, opened, sealed, nominal, runs):
 
 
 def _effect(name, runs, measured):
-    """What the cause changes in a sealed test, by the nominal and the extended members of all solvers.
+    """Changes that the cause makes in a sealed test, by the nominal and the extended members of all solvers.
 
     As of `quantities` along ``response``, of the drift of any block and the opening of any joint, with the number of
     members ``paired``, and measured ``largest(response)`` [m].

@@ -113,7 +113,7 @@ def _of_sensor(scores):
 
 
 def effect_section(diagnosed):
-    """What the cause changes in the sealed tests, for whoever must decide; None where no model was extended."""
+    """Changes that the cause makes in the sealed tests, for whoever must decide; None where no model was extended."""
     gain = diagnosed.gain
     if gain is None or "largest" not in gain:
         return None

@@ -1,16 +1,19 @@
-"""Sections of the report on outcomes."""
+"""The report on outcomes, and its sections."""
 
 from itertools import pairwise
 
 import numpy as np
 
-from blockshake.diagnosis.flight.section import cause_words
+from blockshake.diagnosis.flight.section import cause_words, odds_section
+from blockshake.diagnosis.outcomes.decide import CAUSES
 from blockshake.diagnosis.outcomes.figure import plot_fragility, plot_survival
+from blockshake.diagnosis.verdict.found import document, load_found
 from blockshake.diagnosis.wording import percent_words
 from blockshake.effects.registry import title_of
+from blockshake.geometry.structure import load_structure
 from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import svg_of
-from blockshake.pages.wording import MISSING, number, sentence_case
+from blockshake.pages.wording import MISSING, count_words, number, sentence_case
 from blockshake.statistics.intervals import share_interval
 
 MODELS_IN_WORDS = {
@@ -20,6 +23,17 @@ MODELS_IN_WORDS = {
     "curve": "logistic curve over peak acceleration and velocity, fitted to the open outcomes",
 }
 _CLASSES = (0.0, 0.1, 0.3, 0.7, 0.9, 1.0)  # of the predicted chance, for the reliability
+
+
+def compose_outcomes(campaign, results, effort):
+    """`Document` of the diagnosis of a campaign of outcomes, from the folder of its results."""
+    found = load_found(results)
+    tests = count_words(len(campaign.tests), "test")
+    subtitle = f"{load_structure(campaign.structure).file.name}, {tests} that it survived or not"
+    sections = [section(found) for section in (answer_section, scores_section, gain_section)]
+    titles = {cause: title_of(cause) for cause in CAUSES}
+    sections.append(odds_section(found.decision, titles, "outcomes"))
+    return document(campaign, effort, found, subtitle, sections)
 
 
 def answer_section(found):

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from blockshake.diagnosis.flight.report import compose_flights
+from blockshake.diagnosis.flight.section import compose_flights
 from blockshake.diagnosis.gain.section import effect_section, gain_section
 from blockshake.diagnosis.misfit.section import misfit_section
-from blockshake.diagnosis.outcomes.report import compose_outcomes
+from blockshake.diagnosis.outcomes.section import compose_outcomes
 from blockshake.diagnosis.report.answer_section import answer_section
 from blockshake.diagnosis.report.content import load_diagnosed
 from blockshake.diagnosis.report.history_section import history_section

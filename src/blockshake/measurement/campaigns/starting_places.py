@@ -45,7 +45,7 @@ def with_starting_places(test, structure, path):
     Notes
     -----
     The survey counts; the markers' first places do for blocks that it does not hold, where three markers fit a rigid
-    body within 2 mm and stand more than 5 mm or 10 mrad off. What a block rests on says how high it stands.
+    body within 2 mm and stand more than 5 mm or 10 mrad off. The bodies below say how high a block stands.
     """
     surveyed, seen = _surveyed(test, structure, path), _by_markers(test, structure)
     for body, axis in np.argwhere(np.abs(surveyed - seen) > _BY_MARKERS)[:1]:
@@ -154,5 +154,5 @@ def _by_markers(test, structure):
 
 
 def _against_slab(read, structure):
-    """What was read of the bodies, less what was read of the first driven one, where it was."""
+    """Readings of the bodies, less those of the first driven one, where there are any."""
     return read - np.nan_to_num(read[np.flatnonzero(structure.driven)[:1]])

@@ -21,21 +21,15 @@ for (const figure of document.querySelectorAll("figure")) {
   figure.querySelector("figcaption").append(button);
 }
 
-// Curves to zoom into and blocks that move, drawn when they come into sight; without script, and on paper, the drawing
-// stands.
+// Blocks that move, drawn when they come into sight; without script, and on paper, the drawing stands.
 const sight = new IntersectionObserver((entries) => {
   for (const entry of entries.filter((one) => one.isIntersecting)) {
     sight.unobserve(entry.target);
-    const place = entry.target.querySelector(".interactive");
-    const { moving, data, layout } = JSON.parse(entry.target.querySelector("script").textContent);
     entry.target.classList.add("drawn");
-    if (moving) showMoving(place, moving);
-    else Plotly.newPlot(place, data, layout, {
-      responsive: true, displaylogo: false, modeBarButtons: [["zoom2d", "pan2d", "resetScale2d", "toImage"]],
-    });
+    showMoving(entry.target.querySelector(".moving"), JSON.parse(entry.target.querySelector("script").textContent));
   }
 }, { rootMargin: "600px" });
-for (const place of document.querySelectorAll(".interactive")) sight.observe(place.parentElement);
+for (const place of document.querySelectorAll(".moving")) sight.observe(place.parentElement);
 
 function asCsv(table) {
   const quoted = (cell) => '"' + cell.textContent.trim().replaceAll('"', '""') + '"';

@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.pages.blocks import Table
 from blockshake.pages.rows import face_markers
-from blockshake.pages.wording import MISSING, given, millimetres, model_label, number
+from blockshake.pages.wording import MISSING, given, limited, millimetres, model_label, number
 from blockshake.simulation.models import solver_of
 from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.comparison.comparison import CHANGES, MOST
@@ -39,23 +39,15 @@ def _block_table(case, found, name, caption):
             if compared
             else []
         )
-        rows.append((body, *read, *(_with_limits(at.sel(model=model), name) for model in case.responses)))
+        rows.append(
+            (body, *read, *(limited(at.sel(model=model), name, millimetres) for model in case.responses))
+        )
     labels = (
         f"{model_label(model)} (n = {int(found['counted'].sel(model=model))})" for model in case.responses
     )
     word = f"{case.curve_word[0].upper()}{case.curve_word[1:]}"
     header = ("Block", *([word] if compared else []), *labels)
     return Table(caption, header, tuple(rows), "l" + "r" * (len(header) - 1))
-
-
-def _with_limits(at, name, show=millimetres):
-    value = float(at[name])
-    if not np.isfinite(value):
-        return MISSING
-    limits = [float(at[f"{name}_interval"].sel(bound=one)) for one in ("lower", "upper")]
-    if not np.isfinite(limits).all():
-        return show(value)  # of few samples
-    return f"{show(value)} [{', '.join(map(show, limits))}]"
 
 
 def pairs_table(content):
@@ -68,7 +60,7 @@ def pairs_table(content):
             floors = [found["floor"].sel(model=model) for model in (own, other)]
             rows.append((
                 case.name, f"{model_label(own)} and {model_label(other)}", in_millimetres(at["distance"]),
-                in_millimetres(at["distance_chance"]), _with_limits(at, "history_difference", in_millimetres),
+                in_millimetres(at["distance_chance"]), limited(at, "history_difference", in_millimetres),
                 str(int(at["common"])), " / ".join(map(in_millimetres, floors)), _seconds(at["parting_time"], case),
             ))  # fmt: skip
     return Table(
@@ -93,8 +85,8 @@ def two_levels_table(content):
             if np.isfinite(at["two_level_peak"]):
                 rows.append((
                     case.name, model_label(model), str(int(at["counted"])), millimetres(at["mean_peak"]),
-                    _with_limits(at, "two_level_peak"), number(at["peak_correlation"]), number(at["coefficient"]),
-                    number(at["variance_gain"]),
+                    limited(at, "two_level_peak", millimetres), number(at["peak_correlation"]),
+                    number(at["coefficient"]), number(at["variance_gain"]),
                 ))  # fmt: skip
     if not rows:
         return None
@@ -123,7 +115,9 @@ def other_settings_table(content):
     for case in content.cases.values():
         for model in other_settings(content):
             own, plain = (at_top(case).sel(model=name) for name in (model, solver_of(model).name))
-            pairs = ((millimetres(plain[name]), _with_limits(own, f"{name}_change")) for name in CHANGES)
+            pairs = (
+                (millimetres(plain[name]), limited(own, f"{name}_change", millimetres)) for name in CHANGES
+            )
             rows.append((case.name, model_label(model), str(int(own["changed"])), *chain(*pairs)))
     heads = (f"{head} [mm]" for name in CHANGES for head in (name.capitalize(), "Change"))
     return Table(
@@ -155,7 +149,7 @@ def scores_table(content):
         at = case.differences
         known = at["score"].dropna("model")
         best = model_label(str(known["model"].values[known.argmin("model")])) if known.size else MISSING
-        cells = (_with_limits(at.sel(model=model), "score") for model in models)
+        cells = (limited(at.sel(model=model), "score", millimetres) for model in models)
         rows.append((case.name, case.curve_word, *cells, best))
     return Table(
         "Continuous ranked probability score of every model against the measured curves [mm], mean over times and "

@@ -5,9 +5,17 @@ import numpy as np
 from blockshake.pages.blocks import Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.rows import bodies_by_height, face_markers
-from blockshake.pages.wording import MISSING, millimetres, model_label, number, percent, quantile_percent
+from blockshake.pages.wording import (
+    MISSING,
+    limited,
+    millimetres,
+    model_label,
+    number,
+    percent,
+    quantile_percent,
+)
 from blockshake.statistics.intervals import samples_needed
-from blockshake.study.ensembles.displacement_figure import interactive_displacements, plot_displacements
+from blockshake.study.ensembles.displacement_figure import plot_displacements
 from blockshake.study.extension.changes import HIGH, QUANTITIES, SIDES
 from blockshake.study.fragility.fragility import SAFE
 
@@ -70,11 +78,7 @@ def change_rows(result):
     """Rows of the known quantities: words, without and with the cause, change, and measured if there is ``largest``."""
     for words, show, at in _known(result):
         measured = [show(at["largest"])] if "largest" in at else []
-        yield words, *(_limited(at.sel(side=side), "value", show) for side in SIDES), *measured
-
-
-def _limited(at, name, show):
-    return f"{show(at[name])} [{', '.join(show(limit) for limit in at[f'{name}_interval'].values)}]"
+        yield words, *(limited(at.sel(side=side), "value", show) for side in SIDES), *measured
 
 
 def sentences(content, name):
@@ -92,7 +96,7 @@ def change_sentence(of, cause, result):
         low, high = change["value_interval"].values
         if low > 0.0 or high < 0.0:
             both = " to ".join(show(value) for value in at["value"].values[:2])
-            told.append(f"{words} from {both}, by {_limited(change, 'value', show)}")
+            told.append(f"{words} from {both}, by {limited(change, 'value', show)}")
         else:
             silent.append(words.partition(" [")[0])
     return (
@@ -115,7 +119,6 @@ def _figure(case, nominal):
     return Figure(
         f"{nominal.name}: displacement relative to the slab, without and with the cause{measured}.",
         svg_of(plot_displacements, *shown),
-        interactive=interactive_displacements(*shown),
     )
 
 
@@ -127,7 +130,7 @@ def _transfer(content):
         for model in result["model"].values if case.measured is not None else ():
             at = result.sel(model=model)
             known = np.isfinite(at["gain"])
-            gain = _limited(at, "gain", lambda share: number(share, 2)) if known else MISSING
+            gain = limited(at, "gain", lambda share: number(share, 2)) if known else MISSING
             test = f"{case.settings['measured']['test']}, {case.curve_word}"
             scores = map(millimetres, at["score"].values)
             rows.append((name, test, "yes" if named else "no", model_label(model), *scores, gain))

@@ -1,15 +1,13 @@
 """Blocks of the section on the fragility that tell of samples which draw their motions."""
 
-import numpy as np
-
 from blockshake.pages.blocks import Figure, Heading, Table, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.wording import (
     MISSING,
     count_words,
+    limited,
     millimetres,
     model_label,
-    number,
     percent,
 )
 from blockshake.study.fragility.figure import failed, measure_words, plot_clouds
@@ -71,7 +69,7 @@ def _table(clouds):
         measure = "{} [{}]".format(*measure_words(cloud))
         for method, label in _METHODS.items():
             one = cloud.sel(fit=method)
-            figures = [_limited(one, what) for what in ("median", "dispersion", "safe")]
+            figures = [limited(one, what) for what in ("median", "dispersion", "safe")]
             rows.append((name, model_label(model), drawn, label, measure, *figures))
     return Table(
         f"Fragilities: intensity at which half and {percent(SAFE)} % of the samples do not pass, and dispersion, with "
@@ -80,13 +78,3 @@ def _table(clouds):
         ("Case", "Model", "Samples", "Method", "Intensity", "Median", "Dispersion", f"{percent(SAFE)} %"),
         tuple(rows), "lllllrrr",
     )  # fmt: skip
-
-
-def _limited(one, name):
-    value, limits = float(one[name]), one[f"{name}_interval"].sel(bound=["lower", "upper"]).to_numpy()
-    if not np.isfinite(value):
-        return MISSING
-    if np.isnan(limits).any():
-        return number(value)
-    low, high = (number(limit) if np.isfinite(limit) else "no limit" for limit in limits)
-    return f"{number(value)} [{low}, {high}]"

@@ -2,12 +2,11 @@
 
 import yaml
 
-from blockshake.pages.blocks import Items, Listing, Section, Text
+from blockshake.pages.blocks import Items, Listing, Section
 from blockshake.pages.origin import command_blocks, digests_table, pairs_table, versions_table
-from blockshake.pages.wording import model_label, number, parameter_label
+from blockshake.pages.wording import model_label, parameter_label
 from blockshake.simulation.models import solver_of
 from blockshake.study.ensembles.case_input import COMMANDED
-from blockshake.study.ensembles.timing import total_timing
 from blockshake.study.report.open_questions import MOST, unknown
 
 
@@ -24,12 +23,7 @@ def origin(content):
         {**content.study, "description": " ".join(content.study["description"].split())},
         sort_keys=False, allow_unicode=True, width=100,
     )  # fmt: skip
-    cost = total_timing(content.timings)
     blocks = (
-        Text(
-            f"The simulations of {cost.samples} samples took {number(cost.cpu_time / 60.0, 2)} CPU minutes when they "
-            "last ran, less what was taken from the store."
-        ),
         versions_table(content.versions),
         pairs_table(
             "Digests of the sources that simulated.",

@@ -16,7 +16,6 @@ from blockshake.store import load_made
 from blockshake.study.analyses import ANALYSES, is_of_the_paper
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.ensemble import measured_curves
-from blockshake.study.ensembles.timing import read_timings
 from blockshake.study.sampling.distributions import load_distributions
 from blockshake.study.sampling.sample_parameters import has_parameter
 from blockshake.study.sampling.sample_table import load_design
@@ -129,7 +128,6 @@ class Content:
         From `fragility`, by case; empty where the study asks for none.
     changes : dict of str to xarray.Dataset
         From `changes`, by the case with the cause; empty where the study has none.
-    timings : tuple of Timing
     digests : dict of str to str
         Of input files and of tables that all samples come from, by path.
     versions : dict of str to str
@@ -147,7 +145,6 @@ class Content:
     calibration: dict | None
     fragility: dict
     changes: dict
-    timings: tuple
     digests: dict
     versions: dict
 
@@ -164,15 +161,15 @@ class Content:
         return [case.name for case in self.cases.values() if has_parameter(case.structure, variable)]
 
 
-def load_content(study, results, logs, only=None):
+def load_content(study, results, only=None):
     """Read the `Content` of a finished study, or of one of its cases.
 
     Parameters
     ----------
     study : dict
         Its configuration, checked.
-    results, logs : str or path
-        Folders of its results and of its jobs' logs.
+    results : str or path
+        Folder of its results.
     only : str, optional
         Name of the case that is reported alone: nothing of the others is read.
 
@@ -206,10 +203,6 @@ def load_content(study, results, logs, only=None):
         calibration=next(iter(read["calibration"].values()), None),
         fragility={case: made for (case, _), made in read["fragility"].items()},
         changes={case: made for (case, _), made in read["changes"].items()},
-        timings=read_timings(
-            logs,
-            {(model, case.name): one.samples for case in loaded.values() for model, one in case.responses.items()},
-        ),
         digests={
             "configuration of the study": content_digest(study),
             **{_shown(path): file_digest(path) for path in [*inputs, *tests, design, *stiffness]},

@@ -66,7 +66,7 @@ def moving_samples(case):
         "step": float(times[1] - times[0]), "frames": len(times), "magnification": usual_magnification(case),
         "bodies": bodies, "samples": samples, "measured": measured,
     }  # fmt: skip
-    return json.dumps({"moving": moving}, separators=(",", ":"))
+    return json.dumps(moving, separators=(",", ":"))
 
 
 def plot_still(case):

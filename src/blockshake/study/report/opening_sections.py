@@ -13,6 +13,7 @@ from blockshake.pages.wording import (
     SQUARED,
     count_words,
     given,
+    limited,
     millimetres,
     model_label,
     number,
@@ -86,9 +87,9 @@ def probability_table(content):
             rows.append((
                 f"{case.name}, {marker}", model_label(model),
                 f"{counted} + {failed} failed" if failed else str(counted),
-                _with_limits(top, "collapse_probability", percent), _with_limits(top, "drift_probability", percent),
-                *(_with_limits(top.sel(frame="slab", quantile=q), "peak", _thousandths) for q in _SHOWN),
-                *(_with_limits(top.sel(quantile=q), "peak_rotation", _thousandths) for q in _SHOWN),
+                _bounded(top, "collapse_probability", percent), _bounded(top, "drift_probability", percent),
+                *(_bounded(top.sel(frame="slab", quantile=q), "peak", _thousandths) for q in _SHOWN),
+                *(_bounded(top.sel(quantile=q), "peak_rotation", _thousandths) for q in _SHOWN),
             ))  # fmt: skip
     limit = next(iter(next(iter(content.cases.values())).responses.values())).envelope["drift_probability"]
     shown = " and ".join(f"{100 * one:.0f} %" for one in _SHOWN)
@@ -110,11 +111,8 @@ def probability_table(content):
     )  # fmt: skip
 
 
-def _with_limits(dataset, name, show):
-    value, limits = float(dataset[name]), dataset[f"{name}_interval"].sel(bound=["lower", "upper"])
-    if not np.isfinite([value, *limits]).all():
-        return MISSING
-    return f"{show(value)} [{', '.join(map(show, limits))}]"
+def _bounded(top, name, show):
+    return limited(top, name, show) if np.isfinite(top[f"{name}_interval"]).all() else MISSING
 
 
 def _thousandths(value):

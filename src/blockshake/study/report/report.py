@@ -33,15 +33,15 @@ _SECTIONS = (
 )
 
 
-def make_report(study, results, logs, html, pdf):
+def make_report(study, results, html, pdf):
     """Write the report of a finished study.
 
     Parameters
     ----------
     study : dict
         Its configuration, checked.
-    results, logs : str or path
-        Folders of its results and of its jobs' logs.
+    results : str or path
+        Folder of its results.
     html, pdf : str or path
         To write, each whole or not at all. Same results, same bytes.
 
@@ -50,14 +50,14 @@ def make_report(study, results, logs, html, pdf):
     InputError
         A results file is missing or holds something else.
     """
-    document = compose(load_content(study, results, logs))
+    document = compose(load_content(study, results))
     write_html(html, document)
     write_pdf(pdf, document)
 
 
-def make_case_report(study, case, results, logs, html, pdf):
+def make_case_report(study, case, results, html, pdf):
     """Write the report of one case of a study, from the results of this case alone; parameters as in `make_report`."""
-    document = compose(load_content(study, results, logs, case))
+    document = compose(load_content(study, results, case))
     write_html(html, document)
     write_pdf(pdf, document)
 

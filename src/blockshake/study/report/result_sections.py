@@ -15,7 +15,7 @@ from blockshake.pages.wording import (
     share_words,
 )
 from blockshake.study.comparison.tables import block_tables
-from blockshake.study.ensembles.displacement_figure import interactive_displacements, plot_displacements
+from blockshake.study.ensembles.displacement_figure import plot_displacements
 from blockshake.study.report.joints_table import joints_table
 from blockshake.study.report.moving import moving_samples, plot_still, usual_magnification
 from blockshake.study.sensitivity.findings import quiet_markers
@@ -45,9 +45,7 @@ def _response(case):
 
     def figure(frame, caption):
         shown = envelopes, case.measured, list(markers.values()), list(markers), frame, case.synthetic
-        return Figure(
-            caption, svg_of(plot_displacements, *shown), interactive=interactive_displacements(*shown)
-        )
+        return Figure(caption, svg_of(plot_displacements, *shown))
 
     beside = f"{case.name}: displacement in the inertial frame, in which the coverage is read."
     return [
@@ -79,7 +77,7 @@ def _moving(case):
             "On a screen: the median sample and the worst, fallen or of the largest peak, moving in real time; the "
             "displacement of each point is multiplied, so that blocks look bent where the magnification is large.",
             svg_of(plot_still, case),
-            interactive=moving_samples(case),
+            moving=moving_samples(case),
         )
     ]
 

@@ -52,22 +52,16 @@ def _without_use(content):
 
 
 def _fewer_samples(content):
-    """One sentence for every model and number of samples below that of the design, with the cost of a sample."""
+    """One sentence for every model and number of samples below that of the design."""
     size, ran = len(content.design), {}
-    cost = {(one.model, one.case): one.cpu_time / one.samples for one in content.timings if one.samples}
     for case in content.cases.values():
         for model, one in case.responses.items():
             ran.setdefault((model, one.samples.sizes["sample"]), []).append(case.name)
-    sentences = []
-    for (model, count), names in ran.items():
-        if count == size:
-            continue
-        costs = sorted(cost[model, name] for name in names if (model, name) in cost)
-        each = " to ".join(dict.fromkeys(number(one, 2) for one in (costs[:1] + costs[-1:])))
-        sentences.append(
-            f"{model_label(model)} ran {count} of the {size} samples on {', '.join(names)}"
-            + (f", where a sample cost {each} CPU s." if costs else ".")
-        )
+    sentences = [
+        f"{model_label(model)} ran {count} of the {size} samples on {', '.join(names)}."
+        for (model, count), names in ran.items()
+        if count != size
+    ]
     if sentences:
         sentences.append(
             "Bounds of fewer samples are narrower in the mean, and intervals of few hold less often than stated."

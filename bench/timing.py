@@ -1,11 +1,19 @@
-"""Cost of the simulations, from the logs of their jobs."""
+"""Cost of jobs, and of the simulations of a study, from the logs of the jobs."""
 
+import re
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.log import read_cost
+_COST = re.compile(r"^Took ([\d.]+) s, ([\d.]+) CPU s\.$", re.MULTILINE)
+
+
+class Cost(NamedTuple):
+    """Cost of a job, without its imports [s]."""
+
+    wall_time: float
+    cpu_time: float
 
 
 class Timing(NamedTuple):
@@ -35,6 +43,16 @@ class Timing(NamedTuple):
         return self.cpu_time / self.simulated if self.simulated > 0.0 else np.nan
 
 
+def read_cost(path):
+    """`Cost` in the log of a job; None where the job was killed or has no log.
+
+    The CPU time is that of the job's process and of the programs that the process started and waited for. Snakemake's
+    own benchmarks look every 30 s at a job of more than 15 s, and lose the CPU time after the last look.
+    """
+    found = _COST.findall(Path(path).read_text(encoding="utf-8")) if Path(path).is_file() else []
+    return Cost(*map(float, found[-1])) if found else None
+
+
 def read_timings(logs, samples):
     """Costs of all cases and models, a tuple of `Timing`.
 
@@ -60,10 +78,3 @@ def read_timings(logs, samples):
         wall_time, cpu_time = map(sum, zip(*costs, strict=True)) if costs else (np.nan, np.nan)
         timings.append(Timing(model, case, len(costs), len(covered), simulated, cpu_time, wall_time))
     return tuple(timings)
-
-
-def total_timing(timings):
-    """`Timing` of all cases and models whose CPU time is known; its model and case are empty."""
-    known = [timing for timing in timings if np.isfinite(timing.cpu_time)]
-    names = ("jobs", "samples", "simulated", "cpu_time", "wall_time")
-    return Timing("", "", *(sum(getattr(timing, name) for timing in known) for name in names))
