@@ -6,10 +6,8 @@ from blockshake.study.ensembles.case_input import driving_motions
 from blockshake.study.ensembles.ensemble import join_batches
 
 with logging_to(snakemake.log[0]) as say:
-    of, runs = snakemake.params, CaseRuns(**snakemake.params.runs)
-    base = snakemake.input.base
-    motions = driving_motions(runs.case, base, of.seed)
-    rows, store = batch_rows(snakemake.wildcards.batch, snakemake.input), Store(of.store, of.source, say)
-    write_dataset(
-        snakemake.output[0], join_batches(simulate_samples(runs, motions, rows, store, base)), DECIMALS
-    )
+    of, given, runs = snakemake.params, snakemake.input, CaseRuns(**snakemake.params.runs)
+    motions = driving_motions(runs.case, given.base, of.seed)
+    rows, store = batch_rows(snakemake.wildcards.batch, given), Store(of.store, of.source, say)
+    samples = simulate_samples(runs, motions, rows, store, given.base)
+    write_dataset(snakemake.output[0], join_batches(samples), DECIMALS)

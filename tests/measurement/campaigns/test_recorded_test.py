@@ -139,7 +139,7 @@ GOOD = {
     "a first reading with noise": _displaced(lambda x: x + 3.0 * NOISE),
     # it has moved by then, and says so rightly
     "a first half second that is lost": _set("marker_displacement", (slice(0, 500), 3), np.nan),
-    "an inherited offset": _offset("initial_offset", 0.9),
+    "an inherited offset": _offset("initial_offset", 4e-3),
     "no accelerometers": lambda test: test.drop_dims("time_acc"),
     "x alone": lambda test: test.sel(axis=["x"]),
     "one marker without y": _set("marker_displacement", (slice(None), 3, 1), np.nan),

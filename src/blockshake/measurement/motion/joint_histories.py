@@ -24,16 +24,16 @@ def joint_histories(test, structure, sensors):
     Returns
     -------
     xarray.Dataset
-        ``slip(time, joint)`` [m] and ``rotation(time, joint)`` [rad] as in `joint_coordinates`; ``drift(time, body)``
-        [m], displacement against the driven body, in its frame. Each has ``NAME_noise``, the standard deviation of one
-        value from the markers' noise, without the time.
+        ``slip(time, joint)``, ``opening(time, joint)`` [m] and ``rotation(time, joint)`` [rad] as in
+        `joint_coordinates`; ``drift(time, body)`` [m], displacement against the driven body, in its frame. Each but the
+        opening has ``NAME_noise``, the standard deviation of one value from the markers' noise, without the time.
 
     Notes
     -----
     NaN where a body was not read, and for a joint of a body whose rotation nobody can know. Where the markers of a body
-    do not measure x, its drift and the slips of its joints are NaN. Motions that nobody measured count as none in the
-    others, which errs by the products of small motions. With markers on a line a yaw of the table shows as a slip, and
-    nothing distinguishes the two.
+    do not measure x, its drift and the slips of its joints are NaN, and without z their openings. Motions that nobody
+    measured count as none in the others, which errs by the products of small motions. With markers on a line a yaw of
+    the table shows as a slip, and nothing distinguishes the two.
     """
     poses = body_poses(test, structure, sensors.marker_noise)
     driven = driven_body(structure, poses)
@@ -43,11 +43,13 @@ def joint_histories(test, structure, sensors):
     joints = joint_coordinates(structure, position, rotation).isel(time=slice(1, None))
     seen = np.einsum("tij,tbi->tbj", rotation[:, driven], position - position[:, driven, None])[..., 0]
     along = poses.axes_read[:, 0]
-    slips = xr.DataArray(along[find_joints(structure)[0]].all(axis=1), dims="joint")
+    pairs = find_joints(structure)[0]
+    slips, lifts = (xr.DataArray(poses.axes_read[pairs, axis].all(axis=1), dims="joint") for axis in (0, 2))
     drift = np.where(along & along[driven], seen[1:] - seen[:1], np.nan)
     return xr.Dataset(
         {
             "slip": joints["slip"].sel(tangent="x", drop=True).where(slips),
+            "opening": joints["opening"].where(lifts),
             "rotation": joints["rotation"].sel(axis="y", drop=True),
             "drift": (("time", "body"), drift, {"units": "m"}),
             **_noise(structure, poses, driven),
