@@ -61,8 +61,9 @@ ELLIPSE = (0.035, 0.025)  # m, half axes
 # of all 500 drops and all impacts of the ellipse, as the README beside the data quotes another reading
 OTHER_READING = (
     "Another reading, quoted beside the data, has 0.46 (0.37 to 0.54, quartiles) for the square's corners, which are "
-    "edges here, and 0.54 for the ellipse; tangential over normal impulse at most 0.13 in the median. Of faces that come "
-    "down in rocking it has six of ten return to the same edge; the share hangs on when a body counts as on the ground."
+    "edges here, and 0.54 for the ellipse; tangential over normal impulse at most 0.13 in the median. Of faces that "
+    "come down in rocking it has six of ten return to the same edge; the share hangs on when a body counts as on the "
+    "ground."
 )
 LS_DEM = {
     "parameters": {
@@ -123,13 +124,15 @@ def wrapped(text):
 def _head():
     return (
         "# Real measurements\n\n"
-        "Apart from the two [granite rocks](granite-rocks.md), everything else that this program diagnoses in its tests "
-        "is synthetic. This page tells of measurements of others, as the tool answered: under each heading, all but the description of the set, what others published, "
-        "and the captions is computed. The data are not part of the project. The command is\n\n"
+        "Apart from the two [granite rocks](granite-rocks.md), everything else that this program diagnoses in its"
+        " tests is synthetic. This page tells of measurements of others, as the tool answered: under each "
+        "heading, all but the description of the set, what others published, and the captions is computed. The "
+        "data are not part of the project. The command is\n\n"
         "```\npython bench/measured.py SHARED\n```\n\n"
         "It makes a campaign of each set by `examples/measured_flights.py`, half of the tests open and half "
-        "sealed, and runs `blockshake diagnose --effort quick` on it. A third of the published tests was not at hand. Free flight is judged first: Newton's second law of a body "
-        "that touches nothing tests gravity, lengths, drag and mass centre before any contact. See [diagnosis of free "
+        "sealed, and runs `blockshake diagnose --effort quick` on it. A third of the published tests was not at "
+        "hand. Free flight is judged first: Newton's second law of a body that touches nothing tests gravity, "
+        "lengths, drag and mass centre before any contact. See [diagnosis of free "
         "flight](../theory/free-flight.md) for the equations."
     )
 

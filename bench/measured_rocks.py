@@ -45,7 +45,8 @@ HEAD = (
     "It makes a campaign of each rock by `examples/measured_rocks.py`: the convex hull of the scan in its resting "
     "pose, the mass centre of the closed scan where there is one, the table's acceleration from its displacement and "
     "accelerometer, friction 0.6. One half of the ground motions is open with all its tests, the other is sealed. "
-    "`blockshake diagnose` simulates every test by four models and reads the open outcomes alone "
+    "`blockshake diagnose --effort quick` simulates every test by four models of rigid NSCD and reads the open "
+    "outcomes alone "
     "([diagnosis of outcomes](../theory/outcomes.md))."
 )
 
@@ -67,7 +68,7 @@ def _part(rock, source, folder):
 
 
 def _repeats(rock, source):
-    """Sentence on pairs of tests of one record at nearly the same peaks: these bound each model's accuracy."""
+    """Sentence on pairs of tests of one record at nearly the same peaks: these show what chance does."""
     tests = pd.read_csv(source / "tests.csv")
     tests = tests[tests.has_motion == 1].rename(columns={f"overturned_{rock.lower()}": "fell"})
     pairs = [
@@ -77,9 +78,10 @@ def _repeats(rock, source):
         if abs(np.log(one.scaled_pga_g / other.scaled_pga_g)) < _ALIKE
         and abs(np.log(one.pgv_over_pga_s / other.pgv_over_pga_s)) < _ALIKE
     ]
+    alike = len(pairs) - pairs.count(1)
     return (
-        f"{len(pairs)} pairs of tests are of the same record at peaks within {_ALIKE:.0%}. In {pairs.count(2)} of them "
-        f"both tests ended in a fall, in {pairs.count(1)} one alone: there no curve over the peaks can tell much."
+        f"{len(pairs)} pairs of tests are of the same record at peaks within {_ALIKE:.0%}. In {alike} of them both "
+        f"tests ended alike, {pairs.count(2)} of these in a fall: the others show how far chance limits every model."
     )
 
 

@@ -164,5 +164,6 @@ def _not_seen(outcomes, names, telling, chances, fell):
                 "of its size before the ground does: contacts or mass centre do not hold it as it was placed"
             )
     wrong = sum(int((p > 0.5) != outcome) for p, outcome in zip(chances["extended"], fell, strict=True))
-    lines.append(f"the likeliest model predicts {wrong} of {len(names)} open tests otherwise than they ended")
+    of = f"{wrong} of {len(names)} open tests"
+    lines.append(f"the models with the causes, weighted, predict {of} otherwise than they ended")
     return tuple(lines)
