@@ -115,9 +115,7 @@ def run_files(wildcards):
     return {
         **case_files(wildcards),
         "base": (
-            f"results/{study}/inputs/{case}.nc"
-            if CASES[case]["measured"]
-            else []
+            f"results/{study}/inputs/{case}.nc" if CASES[case]["measured"] else []
         ),
         "design": f"results/{study}/design.csv",
         "stiffness": stiffness_file(model, study, case),
