@@ -45,11 +45,11 @@ def flight_gain(opened, sealed, decision):
 
     Notes
     -----
-    Every model starts a test from what its first flight shows. Recalibrated and extended model have the friction, the
-    restitution and the size of the moments of inertia that make the paths of the open tests shortest apart, without and
-    with the causes; the ratios of the moments are those of `seen_ratios` where flights tell them. Where free flight
-    does not tell forms apart, the open paths choose. The discrepancy without a name is the mean acceleration that open
-    flights have beyond gravity.
+    Every model starts a test from what its first flight shows. Recalibrated and extended model have the friction and
+    the restitution that make the paths of the open tests shortest apart, without and with the causes, and the size of
+    the moments of inertia where flights tell their ratios (`seen_ratios`). Where free flight does not tell forms apart,
+    the open paths choose. The discrepancy without a name is the mean acceleration that open flights have beyond
+    gravity.
     """
     arcs_opened, arcs_sealed = find_arcs(opened)[0], find_arcs(sealed)[0]
     shift = np.mean([arc.acceleration for arc in arcs_opened], axis=0) - opened.structure.file.gravity
@@ -63,16 +63,17 @@ def flight_gain(opened, sealed, decision):
         caveats = (f"no gain was measured on the paths: {why}",)
         return CampaignGain(MeasuredGain(rows=rows, caveats=caveats), xr.Dataset())
     models, best, count, free = {NOMINAL: _nominal(opened)}, np.inf, 0, _nominal(opened)
+    sizes = (1.0,)
     if ratios := seen_ratios(opened, arcs_opened):
-        free = replace(free, inertia=tuple((ratios[0] @ OF_RATIOS).tolist()))
-    models[RECALIBRATED], _, _, runs = _recalibrated(opened, fitted, free)
+        free, sizes = replace(free, inertia=tuple((ratios[0] @ OF_RATIOS).tolist())), _INERTIA
+    models[RECALIBRATED], _, _, runs = _recalibrated(opened, fitted, free, sizes)
     count += runs
     models[DISCREPANCY] = replace(models[RECALIBRATED], shift=tuple(shift.tolist()))
     for fits in choices:
-        model, error, sizes, runs = _recalibrated(opened, fitted, replace(free, fits=fits))
+        model, error, between, runs = _recalibrated(opened, fitted, replace(free, fits=fits), sizes)
         count += runs
         if error < best:
-            models[EXTENDED], best, between = model, error, sizes
+            models[EXTENDED], best, told = model, error, between
     scores = _scores(sealed, able, models)
     scores = scores.assign(
         friction=("kind", [models[kind].friction for kind in KINDS]),
@@ -81,11 +82,12 @@ def flight_gain(opened, sealed, decision):
         axis=list("xyz"),
     )
     chosen = [fit.cause.title for fit in models[EXTENDED].fits]
-    caveats = [
-        f"the model was extended by {' and '.join(chosen)}, by the paths of the open tests",
-        "these paths are shortest apart with {:.2g} ({:.2g} to {:.2g}) times the moments of inertia of the structure "
-        "file".format(float(np.exp(np.mean(models[EXTENDED].inertia))), *between),
-    ]
+    caveats = [f"the model was extended by {' and '.join(chosen)}, by the paths of the open tests"]
+    if ratios:
+        size = float(np.exp(np.mean(models[EXTENDED].inertia)))
+        most = ", the most that was tried" if round(size, 6) == max(sizes) else ""
+        words = f"{size:.2g} ({told[0]:.2g} to {told[1]:.2g}) times the stated moments of inertia"
+        caveats.append(f"these paths are shortest apart with {words}{most}")
     if len(able) < len(sealed.tests):
         left = len(sealed.tests) - len(able)
         caveats.append(f"{left} sealed tests have no free flight, and were not predicted")
@@ -118,9 +120,9 @@ def _fitted_tests(posed, arcs, most=_MOST):
     return able[:: max(1, -(-len(able) // max(most, 1)))]
 
 
-def _recalibrated(posed, tests, model):
+def _recalibrated(posed, tests, model, sizes):
     """The model with friction, restitution and inertia by a grid, refined once; its mean error, the interval of 90 %
-    of the factor on its moments of inertia, tests drawn again, and the number of runs."""
+    of the factor on its moments of inertia, one of the sizes, tests drawn again, and the number of runs."""
     errors = {}
 
     def of_tests(*key):
@@ -135,10 +137,10 @@ def _recalibrated(posed, tests, model):
         return np.mean(of_tests(*key))
 
     friction, restitution, _ = min(product(_FRICTION, _RESTITUTION, [1.0]), key=mean)
-    by_size = np.array([of_tests(friction, restitution, size) for size in _INERTIA])
-    size = _INERTIA[int(by_size.mean(axis=1).argmin())]
+    by_size = np.array([of_tests(friction, restitution, size) for size in sizes])
+    size = sizes[int(by_size.mean(axis=1).argmin())]
     weights = resampled_weights(len(tests), np.random.default_rng([len(tests), 45]))
-    between = np.quantile(np.array(_INERTIA)[(weights @ by_size.T).argmin(axis=1)], (0.05, 0.95))
+    between = np.quantile(np.array(sizes)[(weights @ by_size.T).argmin(axis=1)], (0.05, 0.95))
     finer = [
         (friction * factor, float(np.clip(restitution + step, 0.0, 1.0)), size)
         for factor, step in product(_FINER, _BESIDE)

@@ -164,6 +164,5 @@ def _not_seen(outcomes, names, telling, chances, fell):
                 "of its size before the ground does: contacts or mass centre do not hold it as it was placed"
             )
     wrong = sum(int((p > 0.5) != outcome) for p, outcome in zip(chances["extended"], fell, strict=True))
-    of = f"{wrong} of {len(names)} open tests"
-    lines.append(f"the models with the causes, weighted, predict {of} otherwise than they ended")
+    lines.append(f"models with the causes predict {wrong} of {len(names)} open tests wrongly")
     return tuple(lines)

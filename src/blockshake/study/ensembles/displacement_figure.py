@@ -6,8 +6,7 @@ from matplotlib.patches import Patch
 from blockshake.pages.drawing import GREY, LIGHT_GREY, MEASURED, RED, column_title, new_figure
 from blockshake.pages.wording import model_label
 
-# of a curve; in print a fifth of a point apart or more, and finer ones only make files large
-_MOST_POINTS = 500
+_MOST_POINTS = 500  # of a curve; in print a fifth of a point apart or more: finer ones only make files large
 
 
 def plot_displacements(envelopes, measured, markers, labels, frame, synthetic):
