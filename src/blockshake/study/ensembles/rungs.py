@@ -27,4 +27,4 @@ class Rungs(Strict):
     def scales(self):
         """Scales from the first to the highest, float64 array [1]."""
         count = int(np.floor((self.highest - self.first) / self.increment + 1e-9)) + 1
-        return self.first + self.increment * np.arange(count)
+        return np.round(self.first + self.increment * np.arange(count), 12)
