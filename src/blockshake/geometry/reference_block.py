@@ -17,7 +17,7 @@ class ReferenceBlock(NamedTuple):
     Attributes
     ----------
     body : int
-        Index of the first body of that material and height.
+        Index of the narrowest body of that material and height, the first of equals.
     size : float64 array, shape (3,)
         Of the box around its shape, the upright edge last [m].
     """
@@ -48,7 +48,8 @@ def reference_block(structure):
         height = round(float(size[2]), _SAME_HEIGHT)
         weight[height] = weight.get(height, 0.0) + structure.mass[body]
     most = max(weight, key=weight.get)
-    body = next(body for body, size in sizes.items() if round(float(size[2]), _SAME_HEIGHT) == most)
+    alike = [body for body, size in sizes.items() if round(float(size[2]), _SAME_HEIGHT) == most]
+    body = min(alike, key=lambda body: sizes[body][:2].min())
     return ReferenceBlock(body, sizes[body])
 
 

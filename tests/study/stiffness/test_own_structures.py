@@ -171,6 +171,15 @@ def test_half_width_is_of_the_thickness(own):
     assert half_width(load_structure(own("granite", 0.2))) == 0.05
 
 
+@pytest.mark.parametrize("thin", [1, 2, 3])
+def test_half_width_is_of_the_narrowest_block_in_any_order(own, thin):
+    file = own_file("granite", 1.6)
+    file["shapes"]["thin"] = {"box": [0.5, *file["shapes"]["block"]["box"][1:]]}
+    file["bodies"][thin]["shape"] = "thin"
+    changes = {key: file[key] for key in ("shapes", "bodies")}
+    assert half_width(load_structure(own("granite", 1.6, **changes))) == 0.25
+
+
 def test_a_structure_of_driven_bodies_has_no_blocks(own):
     structure = load_structure(own("granite", 1.6, bodies=own_file("granite", 1.6)["bodies"][:1], markers=[]))
     with pytest.raises(InputError, match=r"bodies: expected a body that is not driven"):
