@@ -15,7 +15,8 @@ from typing import NamedTuple
 
 import numba
 import numpy as np
-from measured import SOLVERS, make_campaign
+from measured import make_campaign
+from measured_impacts import SOLVERS
 from scipy.spatial.transform import Rotation
 
 from blockshake.diagnosis.flight.replay import FlightModel, filmed_replay, start_arc

@@ -6,10 +6,7 @@ import numpy as np
 import pytest
 from made_flights import MASS, SIDE, campaign, drag
 
-import blockshake.diagnosis.flight.decide as decide_module
-from blockshake.diagnosis.flight.causes import CAUSES
-from blockshake.diagnosis.flight.decide import _otherwise_at_first, decide_flights
-from blockshake.diagnosis.flight.evidence import explain, flight_rows
+from blockshake.diagnosis.flight.decide import decide_flights
 from blockshake.diagnosis.flight.gain import flight_gain
 from blockshake.diagnosis.flight.replay import FlightModel, replay, start_arc
 from blockshake.forces.flight.arcs import find_arcs
@@ -154,15 +151,3 @@ def test_paths_are_nearer_with_the_inertia_that_the_body_has():
         return np.mean([np.nanmean(replay(posed, *one, model).middle) for one in tests])
 
     assert error(1.3) < 0.7 * min(error(1.0), error(1.6))
-
-
-def test_a_drag_in_first_flights_alone_is_told(clean, monkeypatch):
-    monkeypatch.setattr(decide_module, "_FEWEST_FLIGHTS", 10)
-    first = {}
-    dragged, _ = find_arcs(campaign(OPEN, {"external_forces": drag(0.6 * MASS)}))
-    for arc in dragged:
-        first.setdefault(arc.test, arc)
-    cause = next(cause for cause in CAUSES if cause.name == "drag")
-    for arcs, told in (([*first.values(), *find_arcs(clean)[0]], True), (dragged, False)):
-        lines = list(_otherwise_at_first(clean, arcs, [explain(flight_rows(clean, arcs), cause)]))
-        assert bool(lines) == told

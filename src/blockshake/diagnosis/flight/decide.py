@@ -24,7 +24,6 @@ MORE = 0.1  # of what the causes before it gain, that a further one needs beside
 MOST_CAUSES = 3  # causes
 _NINETY = 1.645  # standard deviations
 _READINGS = "free flight"
-_FEWEST_FLIGHTS = 20  # flights of a kind, from which on a cause's size is asked of them alone
 
 
 class DecidedFlights(NamedTuple):
@@ -113,10 +112,7 @@ def decide_flights(posed, without=()):
         silent=(),
         n_rows=sum(map(len, rows.values)),
         impacts=impact_words(summary(impacts)),
-        cannot_see=(
-            *_not_seen(posed, broken, stages, share, rows, hidden, mirrored),
-            *_otherwise_at_first(posed, arcs, causes),
-        ),
+        cannot_see=_not_seen(posed, broken, stages, share, rows, hidden, mirrored),
     )
     return DecidedFlights(decision, _evidence(posed, rows, causes, impacts, broken, share))
 
@@ -240,28 +236,6 @@ def _not_seen(posed, broken, stages, share, rows, hidden, mirrored):
     if any(test.planar for test in posed.tests):
         lines.append("the motion was filmed in one plane: nothing across it is known")
     return tuple(lines)
-
-
-def _otherwise_at_first(posed, arcs, causes):
-    """Lines on causes whose size the first flights of the tests tell otherwise than the later ones do."""
-    tests = [arc.test for arc in arcs]
-    first = [arc for number, arc in enumerate(arcs) if arc.test not in tests[:number]]
-    groups = first, [arc for arc in arcs if arc not in first]
-    if min(map(len, groups)) < _FEWEST_FLIGHTS:
-        return
-    rows = [flight_rows(posed, own) for own in groups]
-    for fit in causes:
-        others = [other for other in causes if other is not fit]
-        found = [_sizes(posed, own.refitted(fit, others)) for own in rows]
-        for name in found[0]:
-            one, other = (sizes[name] for sizes in found)
-            if one.lower > other.upper or other.lower > one.upper:
-                yield (
-                    f"{fit.cause.title} differs: {name} {estimate_in_si(one)} in the tests' {len(first)} first "
-                    f"flights, {estimate_in_si(other)} in the {len(groups[1])} later ones; its form is not the true "
-                    "one, or another cause acts in some flights alone"
-                )
-                break
 
 
 def _inertia_words(ratios):
