@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-import tables
 from arrival_definitions import HEADER as ARRIVAL_HEADER
 from arrival_definitions import arrival_rows, arrival_words, stiffness_by_definition, top_peaks
 from convergence import HEADER as CONVERGENCE_HEADER
@@ -57,7 +56,6 @@ _CHANGES = {
     "friction 0.25": dict.fromkeys(_CONCRETE, 0.25),
     "friction 0.12": dict.fromkeys(_CONCRETE, 0.12),
 }
-BENCH = Path("results/bench.json")  # of `make bench`
 FAULTS = Path("results/faults.json")  # of `make test-faults`
 _STEPS = {"nscd-rigid": 1e-3, "ls-dem": 5e-5}  # s
 DEFAULT = DOCS.parent / "config" / "study.yaml"
@@ -251,12 +249,6 @@ def study_shares():
     return markdown(("rule", "jobs", "CPU min", "share [%]"), rows)
 
 
-def still_stack():
-    """Blocks at rest as the bench last measured them; None where it has not."""
-    found = load_json(BENCH).get("still_stack") if BENCH.is_file() else None
-    return found and "\n".join(["```", *tables.PARTS["still_stack"](found), "```"])
-
-
 def paper_run():
     """Finished parts of the paper's study; None where there is none."""
     rows = paper_rows()
@@ -313,7 +305,6 @@ MAKERS = {
     "face-impacts-of-films": faces_of_films,
     "study-sensitivities": study_sensitivities,
     "study-shares": study_shares,
-    "still-stack": still_stack,
     "arrival-definitions": arrival_definitions,
     "cost-of-samples": cost_of_samples,
     "times-on-a-cluster": times_on_a_cluster,

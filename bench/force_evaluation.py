@@ -26,7 +26,7 @@ MEASURED_SPACING = 0.2  # m, the study's
 EVALUATIONS = 40_000
 # level sets and what selects them among the parameters of LS-DEM
 LEVEL_SETS = {"exact distance": {}, "grid": {"level_set": "grid"}}
-TARGET_NS = {"exact distance": 6.0, "grid": 15.0}  # issue "LS-DEM: faithful to the paper", section Speed
+TARGET_NS = {"exact distance": 6.0, "grid": 15.0}
 
 
 @numba.njit(error_model="numpy")

@@ -11,6 +11,7 @@ CONFIGURATIONS = ("configuration-1", "configuration-2", "configuration-3", "conf
 TIME_STEP = 1e-3  # s, the paper's
 DURATION = 2.0  # s, simulated
 DEFORMABLE = ("nscd-elastic", "nscd-viscoelastic")
+TARGETS_US = {"configuration-1 nscd-rigid": 15.0}
 
 
 def nscd_run(structure, motion, model="nscd-rigid", **parameters):

@@ -23,10 +23,14 @@ def measure_wall(n_blocks, repeats, fewest_steps=FEWEST_STEPS, block_steps=BLOCK
 
 
 def summary(sizes):
-    """The walls as given, in ``sizes``, and ``exponent``: the cost of a step grows as blocks to this power."""
+    """``sizes``, ``spread_by_block`` and ``exponent`` as of the walls of LS-DEM (`walls.summary`)."""
     blocks = np.array([wall["blocks"] for wall in sizes])
     step = np.array([wall["us_per_step"]["median"] for wall in sizes])
-    return {"sizes": sizes, "exponent": float(np.polyfit(np.log(blocks), np.log(step), 1)[0])}
+    return {
+        "sizes": sizes,
+        "spread_by_block": float(np.max(step / blocks) / np.min(step / blocks) - 1.0),
+        "exponent": float(np.polyfit(np.log(blocks), np.log(step), 1)[0]),
+    }
 
 
 if __name__ == "__main__":

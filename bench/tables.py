@@ -1,6 +1,8 @@
 """The bench's results as text."""
 
 import force_evaluation
+import nscd_step
+import simulated_second
 import still_stack
 import walls
 
@@ -27,10 +29,11 @@ def _range(values, digits):
 
 def _force_evaluation(result):
     yield "Cost of a node evaluation [ns], all contact work of a three-block stack over its listed nodes"
-    yield f"  {'level set':<16}{'median (quartiles)':<26}{'target':<8}{'node alone':<12}{'pair':<8}nodes, pairs"
+    yield f"  {'level set':<16}{'median (quartiles)':<26}{'target':<15}{'node alone':<12}{'pair':<8}nodes, pairs"
     for name, cost in result.items():
+        target = _beside(cost["ns_per_node"]["median"], force_evaluation.TARGET_NS[name])
         yield (
-            f"  {name:<16}{_range(cost['ns_per_node'], 2):<26}{force_evaluation.TARGET_NS[name]:<8g}"
+            f"  {name:<16}{_range(cost['ns_per_node'], 2):<26}{target:<15}"
             f"{cost['ns_per_node_alone']:<12.2f}{cost['ns_per_pair']:<8.0f}{cost['nodes']}, {cost['pairs']}"
         )
 
@@ -52,8 +55,12 @@ def _arithmetic(result):
 
 def _simulated_second(result):
     yield "CPU seconds per simulated second, 1 Hz, 1.5 m/s2"
+    steps = next(iter(result.values()))
+    yield f"  {'':<18}" + "".join(f"{step:<28}" for step in steps) + f"target at {next(iter(steps))}"
     for name, costs in result.items():
-        yield f"  {name:<18}" + "".join(f"{step}: {_range(cost, 3):<28}" for step, cost in costs.items())
+        cells = "".join(f"{_range(cost, 3):<28}" for cost in costs.values())
+        first = next(iter(costs.values()))["median"]
+        yield f"  {name:<18}{cells}{_beside(first, simulated_second.TARGETS[name])}"
 
 
 def _walls(result):
@@ -67,12 +74,7 @@ def _walls(result):
             f"{wall['peak_memory_mib']:.0f}"
         )
     for unit in ("block", "joint"):
-        share = result[f"spread_by_{unit}"]
-        verdict = "linear" if share <= walls.LINEAR_WITHIN else "not linear"
-        yield (
-            f"  by {unit}: dearest size {100 * share:.0f} % above the cheapest, "
-            f"{verdict} within {100 * walls.LINEAR_WITHIN:.0f} %"
-        )
+        yield f"  by {unit}: {_growth(result[f'spread_by_{unit}'])}"
     yield (
         f"  a step grows as blocks^{result['exponent']:.2f}; "
         f"memory {result['memory_kib_per_block']:.0f} KiB a block"
@@ -83,14 +85,21 @@ def _nscd_step(result):
     yield "Nonsmooth contact dynamics: CPU us of a step of 1 ms, 1 Hz, 1.5 m/s2"
     yield f"  {'':<35}{'median (quartiles)':<28}{'iterations':<12}{'capped':<9}worst residual"
     for name, cost in result.items():
-        yield f"  {name:<35}{_solved(cost, 1)}"
+        target = nscd_step.TARGETS_US.get(name)
+        told = f"      target {_beside(cost['us_per_step']['median'], target)}" if target else ""
+        yield f"  {name:<35}{_solved(cost, 1)}{told}"
 
 
 def _nscd_walls(result):
     yield "Nonsmooth contact dynamics: bonded walls, CPU us of a step of 1 ms"
-    yield f"  {'blocks':<18}{'median (quartiles)':<28}{'iterations':<12}{'capped':<9}{'worst residual':<17}MiB"
+    yield (
+        f"  {'blocks':<8}{'us a block':<12}{'median (quartiles)':<28}{'iterations':<12}{'capped':<9}"
+        f"{'worst residual':<17}MiB"
+    )
     for wall in result["sizes"]:
-        yield f"  {wall['blocks']:<18}{_solved(wall, 0)}{'':<12}{wall['peak_memory_mib']:.0f}"
+        each = wall["us_per_step"]["median"] / wall["blocks"]
+        yield f"  {wall['blocks']:<8}{each:<12.2f}{_solved(wall, 0)}{'':<12}{wall['peak_memory_mib']:.0f}"
+    yield f"  by block: {_growth(result['spread_by_block'])}"
     yield f"  a step grows as blocks^{result['exponent']:.2f}"
 
 
@@ -100,9 +109,22 @@ def _still_stack(result):
     for case, programs in result.items():
         for program, found in programs.items():
             told = (
-                "".join(f"{1e6 * one:<12.2g}" for one in found.values()) if isinstance(found, dict) else found
+                "".join(f"{1e6 * max(one, 0.0):<12.2g}" for one in found.values())
+                if isinstance(found, dict)
+                else found
             )
             yield f"  {case:<34}{program:<20}{told}".rstrip()
+
+
+def _beside(value, target):
+    """A target, and whether the value is at most as large."""
+    return f"{target:g}, {'met' if value <= target else 'missed'}"
+
+
+def _growth(spread):
+    """Dearest over cheapest size in words, held against the target."""
+    verdict = "linear" if spread <= walls.LINEAR_WITHIN else "not linear"
+    return f"dearest size {100 * spread:.0f} % above the cheapest, {verdict} within {100 * walls.LINEAR_WITHIN:.0f} %"
 
 
 def _solved(cost, digits):
