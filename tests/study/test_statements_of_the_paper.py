@@ -10,6 +10,7 @@ from page import CLAIMS
 
 from blockshake.files import HOME
 from blockshake.study.report.content import load_content
+from blockshake.study.sensitivity.findings import markers_by_height
 
 CASES = FIRST, SECOND, THIRD, FOURTH = [f"configuration-{number}" for number in (1, 2, 3, 4)]
 SOFT, RIGID = "ls-dem", "nscd-rigid"
@@ -116,7 +117,7 @@ def test_envelopes_thicken_upward_or_not(content, paper):
     for sign in (1.0, -1.0):
         case = content.cases[FOURTH]
         spread = case.responses[SOFT].sensitivity["spread"]
-        for body, marker in paper.markers_by_height(case).items():
+        for body, marker in markers_by_height(case).items():
             height = case.structure.position[case.structure.body_names.index(body), 2]
             spread.loc[{"quantity": "history", "marker": marker}] = 0.01 * sign * height
         holds, words = paper.upward(content)
@@ -154,7 +155,7 @@ def test_structures_are_ordered_beyond_the_limits(four, paper, top, holds, state
 
 def test_the_worst_of_the_models_counts(paper):
     for verdicts, worst in (((True, True), True), ((True, None), None), ((None, False), False)):
-        found = paper._worst(
+        found = sys.modules["paper_results"]._worst(
             {model: (one, "So.") for model, one in zip((SOFT, RIGID), verdicts, strict=True)}
         )
         assert found == (worst, "LS-DEM: So. NSCD rigid: So. The worst of the models counts.")
