@@ -229,7 +229,7 @@ def test_the_calibration_says_what_all_tests_tell_and_what_they_do_not(document)
     assert said[-1].startswith("2 tests of 2 are synthetic")
     answers, tests = (block for block in section.blocks if block.kind == "table")
     row = dict(zip(answers.header, answers.rows[1], strict=True))
-    assert row["NSCD rigid"] == "has no use for it"
+    assert row["NSCD rigid"] == "in none of its tests"
     assert row["All"].startswith("not told (p ")
     assert "2 of 4 are below 0.05" in tests.caption
     assert "4 runs ended for a numerical reason" in tests.caption

@@ -55,6 +55,13 @@ def test_the_dominating_variable_is_named_with_its_interval_and_the_level_of_cha
     assert "viscous" not in words
 
 
+def test_a_share_of_too_few_samples_for_limits_stands_without_them():
+    few = made_up()
+    few["first_order_interval"][:] = np.nan
+    words = sentence(few, "block-2", "high-face", NOISE)
+    assert "by itself: friction, concrete on concrete 0.60; level of chance 0.30" in words
+
+
 def test_nothing_is_named_within_chance():
     words = sentence(made_up(share=0.2, correlation=0.25), "block-2", "high-face", NOISE)
     assert "No variable is shown to explain any of that by itself" in words

@@ -108,7 +108,7 @@ def answers_table(found):
 
     def cell(one, group):
         answer = one["answers"].get(group)
-        return f"{span(answer)} (p {number(answer['chance'], 2)})" if answer else "has no use for it"
+        return f"{span(answer)} (p {number(answer['chance'], 2)})" if answer else "in none of its tests"
 
     rows = tuple(
         (

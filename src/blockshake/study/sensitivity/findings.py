@@ -161,6 +161,7 @@ def _steered(peak):
 
 
 def influence_words(one):
-    """One variable, marked if it is a control, with its measure and interval."""
+    """One variable, marked if it is a control, with its measure and, where the samples suffice for one, interval."""
     control = ", a control" if one.control else ""
-    return f"{parameter_label(one.parameter)}{control} {one.value:.2f} [{one.lower:.2f}, {one.upper:.2f}]"
+    limits = f" [{one.lower:.2f}, {one.upper:.2f}]" if np.isfinite([one.lower, one.upper]).all() else ""
+    return f"{parameter_label(one.parameter)}{control} {one.value:.2f}{limits}"
