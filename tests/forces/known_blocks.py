@@ -7,6 +7,7 @@ from blockshake.geometry.structure import build_structure
 
 GRAVITY = 9.81
 HEIGHT, WIDTH, DEPTH = 1.6, 0.8, 2.4
+SPAN, BRIDGE = 1.0, 0.8  # m: of a portal, half the distance of its blocks, and the height of its bridge
 RATE, RATE_ACC = 200.0, 512.0
 DURATION = 6.0
 STILL = 0.6  # s
@@ -50,6 +51,45 @@ def stack(n_blocks, friction=0.75):
         ],
     }  # fmt: skip
     return build_structure(mapping, "known.yaml", ".")
+
+
+def portal():
+    """Two blocks 2 m apart, and a third one that bridges them: joints in a loop."""
+    structure = stack(3)
+    mapping = structure.file.model_dump(mode="json")
+    mapping["shapes"]["bridge"] = {"box": [2.0 * SPAN + WIDTH, DEPTH, BRIDGE]}
+    left, right, bridge = mapping["bodies"][1:]
+    left["position"], right["position"] = [-SPAN, 0.0, 0.5 * HEIGHT], [SPAN, 0.0, 0.5 * HEIGHT]
+    bridge |= {"shape": "bridge", "position": [0.0, 0.0, HEIGHT + 0.5 * BRIDGE]}
+    return structure.with_mapping(mapping)
+
+
+def swaying(turn):
+    """The blocks of a `portal` that turn alike about their edges, and its bridge that stays level.
+
+    The table moves as it must for that, by the moment of all about the edges: no other force acts.
+    """
+    mass, carried = WIDTH * HEIGHT, (2.0 * SPAN + WIDTH) * BRIDGE  # over density and depth
+    half, high, square = 0.5 * WIDTH, 0.5 * HEIGHT, WIDTH**2 + HEIGHT**2
+    step = 5e-4
+    grid = np.arange(int((DURATION + 0.1) / step)) * step
+    angle = np.array([turn(t) for t in grid])
+    side, c, s = np.sign(angle), np.cos(angle), np.sin(angle)
+    spun = (2.0 * mass / 3.0 + carried) * square * np.gradient(np.gradient(angle, step), step)
+    weight = 2.0 * (mass + carried) * GRAVITY * (side * half * c - high * s)
+    along = -(spun + weight) / (2.0 * (mass + carried) * (side * half * s + high * c))
+    table = np.cumsum(np.cumsum(np.where(angle != 0.0, along, 0.0))) * step**2
+    block = rocking(lambda t: np.interp(t, grid, table), turn)
+
+    def poses(t):
+        moved = block(t)
+        side = np.sign(turn(t))
+        c, s = np.cos(turn(t)), np.sin(turn(t))
+        # the corner on which the bridge lies, seen from the edge about which its block turns
+        x, z = side * WIDTH * (1.0 - c) + HEIGHT * s, side * WIDTH * s + HEIGHT * (c - 1.0)
+        return np.array([*moved, moved[1], [moved[0, 0] + x, z, 0.0]])
+
+    return poses
 
 
 def shaken(amplitude=1.0, frequency=1.0):

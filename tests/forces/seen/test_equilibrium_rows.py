@@ -4,7 +4,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from known_blocks import GRAVITY, HEIGHT, WIDTH, readings, rocking, shaken, sliding, stack
+from known_blocks import (
+    BRIDGE,
+    GRAVITY,
+    HEIGHT,
+    SPAN,
+    WIDTH,
+    portal,
+    readings,
+    rocking,
+    shaken,
+    sliding,
+    stack,
+    swaying,
+)
 
 from blockshake.forces.seen.point_rows import point_rows
 from blockshake.forces.seen.seen_test import see_test
@@ -70,6 +83,28 @@ def test_normal_force_of_a_single_joint_is_weight_and_vertical_inertia(rocked):
     mass = rocked.structure.mass[1]
     rest = rocked.still
     np.testing.assert_allclose(rocked.forces.force[rest, 0, 2], mass * GRAVITY, rtol=1e-3)
+
+
+def test_normal_forces_in_a_loop_are_those_that_turned_joints_can_carry(quiet):
+    """A bridge on the corners of two blocks that sway: its weight and its inertia alone share out its support."""
+    structure, poses = portal(), swaying(turn)
+    seen = see_test("swayed", readings(structure, poses), structure, quiet)
+    supports = [index for index, face in enumerate(seen.faces) if face.upper == 3]
+    edge = seen.states.edge[..., 0]
+    calm = np.flatnonzero((edge != 0).all(axis=1))
+    assert not seen.tree
+    assert len(calm) > 100
+    assert set(edge[calm, supports[0]]) == {-1, 1}
+    found, expected = seen.forces.force[calm][:, supports, 2], []
+    step = 1e-3
+    for index in calm:
+        before, now, after = (poses(seen.motion.time[index] + shift)[3, :2] for shift in (-step, 0.0, step))
+        along, up = structure.mass[3] * (before - 2.0 * now + after) / step**2
+        corners = 0.5 * WIDTH * edge[index, supports] + [-SPAN, SPAN]
+        # vertical forces at the two corners: their sum, and their moment about the bridge's mass centre
+        wanted = [up + structure.mass[3] * GRAVITY, -0.5 * BRIDGE * along]
+        expected.append(np.linalg.solve([[1.0, 1.0], corners], wanted))
+    np.testing.assert_allclose(found, expected, atol=0.01 * structure.mass[3] * GRAVITY)
 
 
 def test_an_edge_further_in_shifts_the_moment_of_the_normal_force(rocked):

@@ -67,6 +67,7 @@ def test_a_gap_of_a_body_below_leaves_the_forces_above(structure, read, sensors)
     assert "block-1: its motion is unknown for" in " ".join(cannot_see([seen]))
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")
 @pytest.mark.parametrize("body", ["block-1", "block-2"])
 def test_nothing_is_said_of_what_is_not_read(structure, read, sensors, body):
     seen = [see_test("less", without(read, body), structure, sensors)]

@@ -177,7 +177,8 @@ def _ratios(slabs):
     covariances = []
     for slab in slabs:
         apart = slab.time[slab.at][:, None] - slab.time[slab.at]
-        free = (_FREE_SHARE * np.std(slab.lift[slab.at])) ** 2 * np.exp(-0.5 * (apart / _FREE_MEMORY) ** 2)
+        spread = np.std(slab.lift[slab.at]) if len(slab.at) else 0.0  # nothing of the slab may be read
+        free = (_FREE_SHARE * spread) ** 2 * np.exp(-0.5 * (apart / _FREE_MEMORY) ** 2)
         covariances.append(_lift_noise(slab) + free)
     likelihood = from_rows(covariances, [slab.lift[slab.at] for slab in slabs], [])
     fits = []

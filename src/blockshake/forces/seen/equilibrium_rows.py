@@ -54,7 +54,8 @@ class ContactForces:
     ----------
     force, moment : float64 arrays, shape (n_times, n_faces, 3)
         On the upper body, about the middle of the face, along its axes [N, N m]: exact where the faces are a tree, of
-        the least norm elsewhere. NaN where motions are unknown that it follows from.
+        the least norm elsewhere, where the normal force alone is of use. NaN where motions are unknown that it follows
+        from.
     moment_error : float64 array, shape (n_times, n_faces)
         Standard deviation of the moment about the second tangent [N m].
     """
@@ -64,10 +65,18 @@ class ContactForces:
     moment_error: np.ndarray
 
 
-def contact_forces(frames, required, free):
-    """Least-squares `ContactForces` between `FaceFrames`, of the free bodies, an int array (n_free,)."""
+def contact_forces(frames, required, free, states=None):
+    """`ContactForces` of the least norm between `FaceFrames`, of the free bodies, an int array (n_free,).
+
+    Every face may carry any wrench alike or, by `FaceStates`, a thousandth of what it cannot carry as it moves. Alike,
+    turned faces of a loop would pull and clamp: walls under a bridge would share its weight as no statics has it.
+    """
     n_times, n_faces = len(required.wrench), len(frames.faces)
     columns = np.stack([frames.unit_wrenches(face) for face in range(n_faces)], axis=-2)
+    if states is not None:
+        carried = np.stack(_all_carried(frames, states), axis=-2)
+        carries = carried.any(axis=(1, 2))
+        columns = np.where(carries[:, None, None], carried, _CARRIED * columns)
     # (n_times, n_bodies, 6, n_faces, 6) to one matrix an instant
     matrix = columns[:, free].reshape(n_times, 6 * len(free), 6 * n_faces)
     wanted, information, read = _of_read_bodies(required, free)
@@ -76,6 +85,8 @@ def contact_forces(frames, required, free):
     resultants = np.einsum("tij,tj->ti", inverse, wanted.reshape(n_times, -1)).reshape(n_times, n_faces, 6)
     resolved = np.einsum("tij,tji->ti", inverse, matrix).reshape(n_times, n_faces, 6) > _RESOLVED
     resultants[~(resolved.all(axis=2) | read.all(axis=1, keepdims=True))] = np.nan
+    if states is not None:
+        resultants = np.where(carries, resultants, _CARRIED * resultants)
     about = inverse.reshape(n_times, n_faces, 6, len(free), 6)[:, :, 4]
     errors = np.einsum("tfbi,tbij->tfbj", about, covariance_root(information))
     return ContactForces(resultants[..., :3], resultants[..., 3:], np.sqrt((errors**2).sum(axis=(2, 3))))
@@ -187,13 +198,8 @@ def equilibrium_rows(frames, states, motion, required, free):
     wrench, information, read = _of_read_bodies(required, free)
     chosen = np.flatnonzero(read.any(axis=1))
     chosen = chosen[chosen % max(1, round(_EVERY / step)) == 0]
-    bearing = bearing_points(frames, states)
     carried = np.concatenate(
-        [
-            _carried(frames, states, bearing[:, face], face)[chosen][:, free]
-            for face in range(len(frames.faces))
-        ],
-        axis=-1,
+        [columns[chosen][:, free] for columns in _all_carried(frames, states)], axis=-1
     ).reshape(len(chosen), 6 * len(free), 6 * len(frames.faces))
     matrix = np.concatenate([carried, _unread(information[chosen])], axis=-1)
     vectors, sizes, _ = np.linalg.svd(matrix, full_matrices=False)
@@ -206,6 +212,12 @@ def equilibrium_rows(frames, states, motion, required, free):
     roots = covariance_root(information[chosen])[row]
     noise = np.einsum("rbi,rbij->rbj", direction[:, free], roots).reshape(len(row), 6 * len(free))
     return EquilibriumRows(instant, motion.time[instant], direction, value, noise)
+
+
+def _all_carried(frames, states):
+    """Wrenches that each face may carry, a list of (n_times, n_bodies, 6, 6)."""
+    bearing = bearing_points(frames, states)
+    return [_carried(frames, states, bearing[:, face], face) for face in range(len(frames.faces))]
 
 
 def _carried(frames, states, bearing, face):

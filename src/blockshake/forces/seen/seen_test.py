@@ -116,6 +116,8 @@ def see_test(name, readings, structure, sensors):
     states = face_states(structure, faces, motion, joints, still)
     if len(faces) == len(free):
         states = with_resultants(states, frames, forces, joints)
+    else:
+        forces = contact_forces(frames, required, free, states)
     joints = replace(
         joints, **{name: np.nan_to_num(getattr(joints, name)) for name in ("rotation", "roll", "slip_rate")}
     )
