@@ -181,6 +181,9 @@ BAD = {
         "--column: block-1-face.x: ... v1.csv: column 'Weg 1': expected mm; the header says cm",
     ),
     "a row of units": (_set(0, 2, "mm"), [], "--data: ... v1.csv: line 2, Weg 1: expected a number"),
+    "a row of units without one of times": (
+        lambda rows: [["", "mm", "mm", "mm"], *rows], [], "--data: ... v1.csv: line 2, Zeit: expected a time",
+    ),
     "a decimal point": (_same, ["--decimal", "."], "--decimal: ... v1.csv: line 2, Zeit: expected a number with a dec"),
     "no such sign": (_same, ["--decimal", ";"], "--decimal: input should be '.' or ','"),
     "names too far down": (_same, ["--header", "1302"], "--header: ... v1.csv: expected names of columns in line 1302"),

@@ -99,7 +99,8 @@ def test_sheets_and_files_that_hold_no_table(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("t,b\n0,1\n", "column 'a': expected this column once; there are t, b"),
+        ("t,b,\n0,1\n", "column 'a': expected this column once; there are t, b in the header"),
+        ("t-b\n0-1\n", "separator: column 'a': expected this column once; there are t-b in the header"),
         ("t,a,a\n0,1,1\n", "column 'a': expected this column once; it stands twice"),
         ("t,a\n0,1\n1,far\n", "line 3, a: expected a number with a decimal point, or nothing, not 'far'"),
         ("t;a\n0;1,5\n", "decimal: line 2, a: expected a number with a decimal point, or nothing, not '1,5'"),

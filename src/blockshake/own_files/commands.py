@@ -26,11 +26,8 @@ def add_data_commands(add):
     add_baseline(command)
     command.add_argument("--output", required=True, metavar="MOTION.csv")
 
-    command = add(
-        "import-campaign",
-        _import_campaign,
-        "measured tests in spreadsheets or CSV files, to a campaign's folder",
-    )
+    words = "measured tests in spreadsheets or CSV files, to a campaign's folder"
+    command = add("import-campaign", _import_campaign, words)
     command.add_argument(
         "sources", nargs="+", metavar="MAP.yaml|FILE", help="a map, or one table a test; FILE.xlsx#SHEET"
     )

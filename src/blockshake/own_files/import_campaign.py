@@ -183,9 +183,8 @@ def _markers_of_poses(source, body, posed, asked, structure, where):
     own = [marker for marker in structure.file.markers if marker.body == body]
     if not own:
         raise InputError(where, f"columns.{body}.x", f"expected markers of {body} in the structure")
-    time, columns = _pose_columns(
-        source, body, [key for key in posed if key.startswith(f"{body}.")], asked, where
-    )
+    keys = [key for key in posed if key.startswith(f"{body}.")]
+    time, columns = _pose_columns(source, body, keys, asked, where)
     with _by_key(asked, where):
         position, rotation, _ = poses_of_columns(columns, source, body)
     found = {}
@@ -254,8 +253,7 @@ def _clock(table, asked, where):
     name = asked.time.column
     time = table.times(name, unit_size("time", asked.time.unit or "s", where, "time.unit"))
     if np.isnan(time).any():
-        line = table.lines[int(np.argmax(np.isnan(time)))]
-        raise InputError(table.source, f"line {line}, {name}", "expected a time")
+        raise table.fault(table.lines[int(np.argmax(np.isnan(time)))], name, "expected a time")
     check_increase(time, table.lines, table.source, name)
     missing = missing_rows(time) if len(time) > 1 else np.zeros(0)
     if missing.any() and not asked.fill_gaps:

@@ -70,13 +70,12 @@ class CellTable(NamedTuple):
         cells = self._cells(name)
         if kind is not None:
             self._check_unit(name, kind, size)
-        keys = [f"line {line}, {name}" for line in self.lines]
-        numbers = [self._number(cell, key) for cell, key in zip(cells, keys, strict=True)]
+        numbers = [self._number(cell, line, name) for cell, line in zip(cells, self.lines, strict=True)]
         written = np.array([np.nan if number is None else number for number in numbers], dtype=float)
         coded = None if kind == "time" else missing_code(written)
         if coded is not None:
             wrong = f"'{cells[coded]}' looks like a code for a missing one, which an empty cell says"
-            raise InputError(self.source, keys[coded], f"expected a reading; {wrong}")
+            raise InputError(self.source, f"line {self.lines[coded]}, {name}", f"expected a reading; {wrong}")
         try:
             return np.array([np.nan if number is None else float(number * size) for number in numbers])
         except ArithmeticError:
@@ -94,7 +93,7 @@ class CellTable(NamedTuple):
         if None in clocks:
             row = clocks.index(None)
             wrong = f"expected a clock of the day such as 14:03:21.250, not '{cells[row] or ''}'"
-            raise InputError(self.source, f"line {self.lines[row]}, {name}", wrong)
+            raise self.fault(self.lines[row], name, wrong)
         days, times, before, last = 0, [], clocks[0][1], 0
         for clock in clocks:
             date, hours, minutes, seconds, half = clock.groups()
@@ -108,7 +107,7 @@ class CellTable(NamedTuple):
     def _cells(self, name):
         """Cells of the one column of a name."""
         if self.names.count(name) != 1:
-            others = f"there are {', '.join(self.names[:_MOST_NAMES])}"
+            others = f"there are {', '.join(filter(None, self.names[:_MOST_NAMES]))} in the header"
             wrong = f"expected this column once; {'it stands twice' if name in self.names else others}"
             key = f"column '{name}'"  # where there is one alone, another sign separates
             key, wrong = ("separator", f"{key}: {wrong}") if len(self.names) == 1 else (key, wrong)
@@ -126,7 +125,14 @@ class CellTable(NamedTuple):
                 wrong = f"expected {given}; the header says {found}"
                 raise InputError(self.source, f"column '{name}'", wrong)
 
-    def _number(self, cell, key):
+    def fault(self, line, name, wrong, key="data"):
+        """Error of a cell; in the first row, which shows whether the layout is right, of a key of `TableLayout`."""
+        place = f"line {line}, {name}"
+        return InputError(
+            self.source, *((key, f"{place}: {wrong}") if line == self.lines[0] else (place, wrong))
+        )
+
+    def _number(self, cell, line, name):
         """A cell as a decimal, or None for a gap."""
         text = "" if cell is None else str(cell).strip()
         if text.lower() in GAPS:
@@ -136,14 +142,12 @@ class CellTable(NamedTuple):
         try:
             return Decimal(number)
         except ArithmeticError:
-            raise InputError(self.source, key, f"expected a number of usual size, not '{text}'") from None
+            raise self.fault(line, name, f"expected a number of usual size, not '{text}'") from None
         except TypeError:
             wrong = f"expected a number with a decimal {SIGNS[self.decimal]}, or nothing, not '{text}'"
             wrong += "; thousands have no sign between them" if {".", ","} & set(text) else ""
-            if key.startswith(f"line {self.lines[0]},"):  # where the layout shows
-                swapped = cell_number(text, "." if self.decimal == "," else ",")
-                key, wrong = "decimal" if swapped else "data", f"{key}: {wrong}"
-            raise InputError(self.source, key, wrong) from None
+            swapped = cell_number(text, "." if self.decimal == "," else ",")
+            raise self.fault(line, name, wrong, "decimal" if swapped else "data") from None
 
 
 def cell_number(text, decimal):

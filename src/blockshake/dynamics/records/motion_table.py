@@ -66,6 +66,5 @@ def load_motion_table(source, layout, time, columns, unit, time_unit, baseline):
 def _finite(table, name, values):
     """Values of a column without gaps."""
     if not np.isfinite(values).all():
-        line = table.lines[int(np.argmin(np.isfinite(values)))]
-        raise InputError(table.source, f"line {line}, {name}", "expected a finite number")
+        raise table.fault(table.lines[int(np.argmin(np.isfinite(values)))], name, "expected a finite number")
     return values
