@@ -50,14 +50,14 @@ ROOMS_OF_STUDY = [
 MOST_MODULES = 15
 WITH_ROOMS = ("diagnosis", "study")  # whose folders have a budget each
 MOST_LINES = {
-    ".": 2335, "tables": 535, "statistics": 368, "geometry": 2645, "dynamics": 3002, "solvers": 8757,
-    "measurement": 4416, "simulation": 1910, "parity": 2245, "forces": 2189, "effects": 1168, "pages": 1424,
+    ".": 2335, "tables": 565, "statistics": 368, "geometry": 2645, "dynamics": 2989, "solvers": 8757,
+    "measurement": 4401, "simulation": 1910, "parity": 2245, "forces": 2189, "effects": 1168, "pages": 1424,
     "study": 1006, "study/sampling": 1195, "study/ensembles": 1241, "study/stiffness": 512,
     "study/comparison": 685, "study/fragility": 1020, "study/sensitivity": 700, "study/calibration": 1079,
     "study/report": 1887, "views": 758, "diagnosis": 354, "diagnosis/evidence": 1119,
     "diagnosis/outside": 617, "diagnosis/answer": 1783, "diagnosis/nominal": 778, "diagnosis/misfit": 429,
     "diagnosis/verdict": 592, "diagnosis/gain": 1502, "diagnosis/report": 973, "virtual": 477,
-    "own_files": 1184, "cost": 296, "diagnosis/flight": 1246, "diagnosis/outcomes": 916,
+    "own_files": 1181, "cost": 296, "diagnosis/flight": 1246, "diagnosis/outcomes": 916,
     "diagnosis/planning": 580, "study/extension": 321,
 }  # fmt: skip
 MOST_LINES_TOGETHER = 53_690

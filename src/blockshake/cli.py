@@ -17,7 +17,7 @@ from blockshake.simulation.models import MODELS
 
 NUMERICAL_FAILURE = 3
 # of arguments that have another name
-_OPTIONS = {"parameters": "--set", "channels": "--column", "columns": "--column"}
+_OPTIONS = {"parameters": "--set", "channels": "--column", "columns": "--column", "options": "options"}
 UNREAD = 141  # whoever reads the output has gone, as after `blockshake parameters | head -1`
 
 
@@ -78,11 +78,19 @@ def _run(arguments):
 
 
 def _with_option(error):
-    """An error, which names a command's option where the function's names an argument."""
+    """An error, which names a command's option where the function's names an argument, or a key that options make."""
     if not isinstance(error.where, Argument):
         return error
-    option = _OPTIONS.get(error.where, f"--{error.where.replace('_', '-')}")
-    return InputError(option, error.key, error.expected)
+    name, key = error.where, error.key
+    if name == "options" and key:
+        name, _, key = key.partition(".")
+        inner = {
+            "layout": key,
+            "tests": key.rpartition(".")[2],
+            "time": "time_unit" if key == "unit" else "time",
+        }
+        name, key = inner.get(name, name), key if name == "columns" else ""
+    return InputError(_OPTIONS.get(name, f"--{name.replace('_', '-')}"), key, error.expected)
 
 
 def _is_read(stream):

@@ -107,6 +107,9 @@ def test_a_table_may_have_semicolons_or_tabs_and_decimal_commas(folder, separato
     table.write_bytes(text.encode("utf-8-sig"))
     assert is_record_set(table)
     assert [record.level for record in read_records(table)] == [2.5, 5.0]
+    table.write_bytes(text.replace("file", '"file"').encode("utf-16"))
+    assert is_record_set(table)
+    assert [record.level for record in read_records(table)] == [2.5, 5.0]
     table.write_text(text + separator.join(("\nrecords/record-1.csv", "1.012")))  # thousands, or a slip
     with pytest.raises(InputError, match=r"expected one decimal sign, found '2,5' and '1\.012'"):
         read_records(table)

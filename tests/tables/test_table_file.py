@@ -1,5 +1,6 @@
 """Tables as users write them: digits stay, faults get one line."""
 
+from datetime import datetime, time, timedelta
 from decimal import Decimal
 
 import numpy as np
@@ -98,10 +99,12 @@ def test_sheets_and_files_that_hold_no_table(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("t,b\n0,1\n", "column 'a': expected this column once; there are t, b"),
+        ("t,b,\n0,1\n", "column 'a': expected this column once; there are t, b in the header"),
+        ("t-b\n0-1\n", "separator: column 'a': expected this column once; there are t-b in the header"),
         ("t,a,a\n0,1,1\n", "column 'a': expected this column once; it stands twice"),
         ("t,a\n0,1\n1,far\n", "line 3, a: expected a number with a decimal point, or nothing, not 'far'"),
-        ("t;a\n0;1,5\n", "line 2, a: expected a number with a decimal point, or nothing, not '1,5'"),
+        ("t;a\n0;1,5\n", "decimal: line 2, a: expected a number with a decimal point, or nothing, not '1,5'"),
+        ("t;a\ns;mm\n0;1\n", "data: line 2, a: expected a number"),
         ("t,a\n0,1_0\n", "line 2, a: expected a number"),
         ('t,a\n0,"1\n', "expected cells between ','"),
     ],
@@ -119,3 +122,59 @@ def test_text_of_a_workbook_has_the_table_s_decimal_sign(tmp_path):
     assert _column(path, "t", decimal=",") == [0.5, 1.5]  # a number has no sign to take for another
     with pytest.raises(InputError, match="line 3, a: expected a number with a decimal comma"):
         _column(path, "a", decimal=",")
+
+
+def test_a_unit_error_names_both_units(tmp_path):
+    for text in ("t,a [cm]\n0,1\n", "t,a [cm]\ns,cm\n0,1\n"):
+        (tmp_path / "t.csv").write_text(text)
+        table = read_table(tmp_path / "t.csv", TableLayout(data=text.count("\n")))
+        with pytest.raises(InputError, match=r"column 'a \[cm\]': expected mm; the header says cm"):
+            table.column("a [cm]", MM, "displacement")
+
+
+CLOCKS = {
+    "a comma": (["14:03:21,250", "14:03:21,260"], [50601.25, 50601.26]),
+    "whole seconds": (["9:59:59", "10:00:00"], [35999.0, 36000.0]),
+    "midnight": (["23:59:59.99", "00:00:00.01", "00:00:00.03"], [86399.99, 86400.01, 86400.03]),
+    "a fall that is no midnight": (["14:03:21.25", "14:03:20.25"], [50601.25, 50600.25]),
+    "a date": (["2026-03-04 14:03:21.250", "2026-03-04T14:03:21.252Z"], [50601.25, 50601.252]),
+    "a date in German": (["04.03.2026 23:59:59,99", "05.03.2026 00:00:00,00"], [86399.99, 86400.0]),
+    "an American clock": (["3/4/2026 11:59:59.5 PM", "3/5/2026 12:00:00.5 am"], [86399.5, 86400.5]),
+    "a date that changes at noon": (["04.03. 12:00:00", "05.03. 12:00:01"], [43200.0, 129601.0]),
+    "a date that stays": (["2026-03-04 23:59:59", "2026-03-04 00:00:01"], [86399.0, 1.0]),
+}
+
+
+@pytest.mark.parametrize("what", CLOCKS)
+def test_clocks_of_the_day_are_seconds(what, tmp_path):
+    cells, seconds = CLOCKS[what]
+    (tmp_path / "t.csv").write_text("\n".join(["t;a", *(f"{cell};1" for cell in cells)]))
+    assert read_table(tmp_path / "t.csv", TableLayout()).times("t").tolist() == seconds
+    (tmp_path / "t.csv").write_text("\n".join(f"{cell};1" for cell in cells))  # without names
+    assert read_table(tmp_path / "t.csv", TableLayout()).times("1").tolist() == seconds
+
+
+def test_clocks_of_a_workbook_are_seconds(tmp_path):
+    start = datetime(2026, 3, 4, 23, 59, 59, 990_000)
+    dated = [start + timedelta(milliseconds=5 * row) for row in range(4)]
+    seconds = [86399.99, 86399.995, 86400.0, 86400.005]
+    path = _book(tmp_path / "b.xlsx", one=[["t"], *([cell] for cell in dated)])
+    assert read_table(path, TableLayout()).times("t").tolist() == seconds
+    path = _book(tmp_path / "b.xlsx", one=[["t"], *([cell.time()] for cell in dated)])
+    assert read_table(path, TableLayout()).times("t").tolist() == seconds
+    lasted = [timedelta(seconds=one) for one in seconds]
+    path = _book(tmp_path / "b.xlsx", one=[["t"], *([cell] for cell in lasted)])
+    assert read_table(path, TableLayout()).times("t").tolist() == seconds
+    path = _book(tmp_path / "b.xlsx", one=[["t", "a"], [time(14, 3, 21), 1], [None, 1]])
+    with pytest.raises(
+        InputError, match=r"line 3, t: expected a clock of the day such as 14:03:21\.250, not ''"
+    ):
+        read_table(path, TableLayout()).times("t")
+
+
+def test_minutes_and_seconds_alone_are_no_clock(tmp_path):
+    (tmp_path / "t.csv").write_text("t;a\n03:21.25;1\n")
+    with pytest.raises(
+        InputError, match=r"expected a number with a decimal point, or nothing, not '03:21\.25'"
+    ):
+        read_table(tmp_path / "t.csv", TableLayout()).times("t")

@@ -203,13 +203,11 @@ def _corrected(motion, corner, where, reason):
     step = float(breaks[-1] / (len(breaks) - 1))
     uneven = np.ptp(np.diff(breaks)) > _UNEVEN * step
     if motion.kind != "acceleration" or uneven or motion.table.coefficients[:, PITCH].any():
-        raise InputError(
-            where, "baseline", "expected accelerations at even times, which alone can be corrected"
-        )
+        wrong = "expected accelerations at even times, which alone can be corrected"
+        raise InputError(where, "baseline", wrong)
     if corner >= 0.5 / step:
-        raise InputError(
-            where, "baseline", f"expected below the Nyquist frequency, {0.5 / step:g} Hz, not {corner:g} Hz"
-        )
+        wrong = f"expected below the Nyquist frequency, {0.5 / step:g} Hz, not {corner:g} Hz"
+        raise InputError(where, "baseline", wrong)
     pad = 1.5 * _ORDER / corner
     check_samples(len(breaks), step, pad, where)
     before, pad, detrend = _accelerations(motion), int(np.ceil(pad / step)), scipy.signal.detrend

@@ -106,9 +106,8 @@ def _read(source, baseline, channels):
     if path.suffix.lower() in (".yaml", ".yml"):
         _check_no_channels(channels, path)
         if baseline not in (AUTO, NONE):
-            raise InputError(
-                path, "baseline", f"expected {AUTO} or {NONE} of a synthetic motion, which ends at rest"
-            )
+            wrong = f"expected {AUTO} or {NONE} of a synthetic motion, which ends at rest"
+            raise InputError(path, "baseline", wrong)
         return synthesise(load_synthetic(path))
     text = read_foreign_text(path)
     ending = path.suffix.lower()
@@ -142,9 +141,8 @@ def _motion_of_rows(rows, source, form):
 
 def _check_no_channels(channels, path):
     if channels:
-        raise InputError(
-            Argument("channels"), "", f"expected for a record, or with --unit for a table; {path} is neither"
-        )
+        wrong = f"expected for a record, or with --unit for a table; {path} is neither"
+        raise InputError(Argument("channels"), "", wrong)
 
 
 def _record_motion(records, path, baseline, channels):

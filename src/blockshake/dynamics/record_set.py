@@ -11,9 +11,9 @@ from pydantic import Field, model_validator
 from blockshake.dynamics.intensity import motion_figures, response_spectrum
 from blockshake.dynamics.load_motion import load_motion, scaled
 from blockshake.errors import InputError
-from blockshake.files import content_digest, named_file, shipped_names
+from blockshake.files import content_digest, named_file, read_foreign_text, shipped_names
 from blockshake.tables.numbers import plain_number
-from blockshake.tables.table_file import csv_rows
+from blockshake.tables.table_file import csv_records
 from blockshake.validation import Positive, Strict
 
 # how the texts of records end that name a vertical component: PEER's "..., UP", K-NET's "U-D", ESM's "HNZ"
@@ -66,8 +66,8 @@ def is_record_set(source):
     path = Path(source)
     if path.suffix.lower() != ".csv" or not path.is_file():
         return path.is_dir()
-    with path.open(encoding="utf-8-sig", errors="replace") as table:
-        return _FILE in [cell.strip() for cell in re.split("[,;\t]", table.readline())]
+    header, _, _ = read_foreign_text(path).partition("\n")
+    return _FILE in [cell.strip(' "') for cell in re.split("[,;\t]", header)]
 
 
 def record_files(source):
@@ -104,22 +104,18 @@ def read_records(source):
             if file.suffix.lower() not in _NO_MOTIONS
         ]
     else:
-        header, *rows = csv_rows(path) or [[]]
-        for name in header:
-            if name not in (_FILE, *_FACTORS) or header.count(name) > 1:
-                raise InputError(path, name, "expected the columns file and, of each, scale or level")
-        if set(_FACTORS) <= set(header):
-            raise InputError(path, "level", "expected one of scale and level: a level sets the scale")
-        records = [_record(path, f"row {number}", header, row) for number, row in enumerate(rows, 1)]
+        records = [_record(path, f"row {number}", row) for number, row in enumerate(csv_records(path), 1)]
     if not records:
         raise InputError(path, "", "expected at least one record")
     return tuple(records)
 
 
-def _record(table, place, header, row):
-    if len(row) != len(header):
-        raise InputError(table, place, f"expected {len(header)} cells, not {len(row)}")
-    cells = dict(zip(header, row, strict=True))
+def _record(table, place, cells):
+    for name in cells:
+        if name not in (_FILE, *_FACTORS):
+            raise InputError(table, name, "expected the columns file and, of each, scale or level")
+    if cells.keys() >= set(_FACTORS):
+        raise InputError(table, "level", "expected one of scale and level: a level sets the scale")
     name = cells.pop(_FILE)
     path = name if name in shipped_names("motions") else str(table.parent / name)
     if not named_file("motions", path).is_file():

@@ -4,7 +4,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-from blockshake.errors import InputError
+from blockshake.errors import Argument, InputError
 from blockshake.files import check_output, file_digest, history, write_text
 
 KINDS = ("structure", "study", "campaign")
@@ -17,9 +17,7 @@ def add_data_commands(add):
         "convert-motion", _convert_motion, "a record or a table of another format, to the project's CSV"
     )
     command.add_argument("file", metavar="FILE", help="a record, or a table (then with --unit)")
-    command.add_argument(
-        "--unit", metavar="UNIT", help="of a table: m/s2, cm/s2, g, m/s, m, mm, ...; never guessed"
-    )
+    _add_options(command, ("--unit UNIT", "of a table: m/s2, cm/s2, g, m/s, m, mm, ...; never guessed"))
     command.add_argument(
         "--column", action="append", default=[], metavar="AXIS=COLUMN",
         help="such as x=EW, repeatable; of a record with several channels x=NUMBER or x=NAME",
@@ -28,16 +26,14 @@ def add_data_commands(add):
     add_baseline(command)
     command.add_argument("--output", required=True, metavar="MOTION.csv")
 
-    command = add(
-        "import-campaign",
-        _import_campaign,
-        "measured tests in spreadsheets or CSV files, to a campaign's folder",
-    )
+    words = "measured tests in spreadsheets or CSV files, to a campaign's folder"
+    command = add("import-campaign", _import_campaign, words)
     command.add_argument(
         "sources", nargs="+", metavar="MAP.yaml|FILE", help="a map, or one table a test; FILE.xlsx#SHEET"
     )
     command.add_argument("--output", required=True, metavar="DIR")
-    for option, words in (
+    _add_options(
+        command,
         ("--structure NAME|FILE", "that was tested"),
         ("--motion NAME|FILE", "that was commanded"),
         ("--scale SCALE", "of that motion (default 1)"),
@@ -46,8 +42,7 @@ def add_data_commands(add):
         ("--displacement-unit UNIT", "m, cm, mm or um"),
         ("--acceleration-unit UNIT", "m/s2, cm/s2 or g"),
         ("--rest S", "quiet start, whose mean displacements count from"),
-    ):
-        command.add_argument(option.split()[0], metavar=option.split()[1], help=words)
+    )
     command.add_argument(
         "--column", action="append", default=[], metavar="READING=COLUMN",
         help="such as block-1-face.x=LVDT3, slab-acc-x=A1 or wire-1=W1, repeatable",
@@ -75,22 +70,26 @@ def add_baseline(command):
     )  # fmt: skip
 
 
+def _add_options(command, *options):
+    for option, words in options:
+        name, value = option.split()
+        command.add_argument(name, metavar=value, help=words, type=int if value == "LINE" else str)
+
+
 def _add_layout(command):
-    command.add_argument("--time", metavar="COLUMN", help="of the times (default time_s)")
-    command.add_argument("--time-unit", metavar="UNIT", help="s (default), ms or min")
-    command.add_argument(
-        "--separator", metavar="CHARACTER", help="between cells (default: as the header shows)"
-    )
-    command.add_argument(
-        "--decimal", choices=(".", ","), metavar="SIGN", help="decimal sign, . (default) or ,"
-    )
-    command.add_argument("--header", type=int, metavar="LINE", help="of the columns' names (default 1)")
-    command.add_argument(
-        "--data", type=int, metavar="LINE", help="first one of numbers (default: below the names)"
+    _add_options(
+        command,
+        ("--time COLUMN", "of the times (default time_s)"),
+        ("--time-unit UNIT", "s (default), ms or min"),
+        ("--separator CHARACTER", "between cells (default: as the header shows)"),
+        ("--decimal SIGN", "decimal sign, . (default) or ,"),
+        ("--header LINE", "of the columns' names (default 1)"),
+        ("--data LINE", "first one of numbers (default: below the names)"),
     )
 
 
 _LAYOUT = ("separator", "decimal", "header", "data")
+_MADE = Argument("options")  # that make a mapping, whose keys the command line names as options
 
 
 def _given(options, names):
@@ -126,7 +125,7 @@ def _convert_motion(options):
         if not columns:
             raise InputError("--column", "", "expected for a table")
         motion = load_motion_table(
-            options.file, validated(TableLayout, _given(options, _LAYOUT), "options"), options.time or "time_s",
+            options.file, validated(TableLayout, _given(options, _LAYOUT), _MADE), options.time or "time_s",
             columns, options.unit, options.time_unit or "s", options.baseline,
         )  # fmt: skip
     else:
@@ -151,11 +150,13 @@ def _import_campaign(options):
     )  # fmt: skip
     columns, where = _columns(options), options.sources[0]
     if Path(where).suffix in (".yaml", ".yml"):
-        if len(options.sources) > 1 or given or columns or options.fill_gaps:
-            raise InputError(where, "", "expected the map alone; it says all that options say")
+        more = [*given, *["column"] * bool(columns), *["fill_gaps"] * options.fill_gaps]
+        if len(options.sources) > 1 or more:
+            wrong = "expected the map alone; its keys say all that options say"
+            raise InputError(*((Argument(more[0]), where) if more else (where, "")), wrong)
         asked = load_map(where)
     else:
-        asked, where = _map_of_options(options, given, columns), "options"
+        asked, where = _map_of_options(options, given, columns), _MADE
     print("\n".join(import_campaign(asked, options.output, where)))
     print(f"{options.output}: {len(asked.tests)} tests imported")
 
@@ -188,7 +189,7 @@ def _map_of_options(options, given, columns):
         ],
         **chosen("structure", "displacement_unit", "acceleration_unit", "rest"),
     }
-    return validated(ImportMap, mapping, "options")
+    return validated(ImportMap, mapping, _MADE)
 
 
 def _new(options):

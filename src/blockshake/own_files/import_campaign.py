@@ -1,5 +1,6 @@
 """Spreadsheets of a laboratory to a campaign's folder, whole or not at all."""
 
+import contextlib
 import re
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.records.times import check_increase
 from blockshake.errors import InputError
 from blockshake.files import history, replacing_folder, write_dataset, write_text
 from blockshake.geometry.schema import AXES
@@ -18,12 +20,13 @@ from blockshake.measurement.campaigns.campaign_folder import (
     write_campaign_file,
 )
 from blockshake.measurement.campaigns.clocks import missing_rows
+from blockshake.measurement.campaigns.faulty_readings import stuck
 from blockshake.measurement.campaigns.recorded_test import checked_test
 from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.measurement.poses.pose_file import ANGLE, QUATERNION, free_body, poses_of_columns
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
 from blockshake.measurement.sensors.transducers import transducer_names
-from blockshake.tables.table_file import read_table
+from blockshake.tables.table_file import TableLayout, read_table
 from blockshake.tables.units import unit_size
 
 _TURNS = tuple(f"q{part}" for part in QUATERNION)
@@ -57,7 +60,8 @@ def import_campaign(asked, folder, where):
             _fill(asked, made, where)
             lines = campaign_lines(made)
         except InputError as error:
-            raise InputError(error.where.replace(str(made), str(folder)), error.key, error.expected) from None
+            said = type(error.where)(error.where.replace(str(made), str(folder)))
+            raise InputError(said, error.key, error.expected) from None
     return [line.replace(str(made), str(folder)) for line in lines]
 
 
@@ -68,14 +72,16 @@ def _fill(asked, folder, where):
     for test in asked.tests:
         name = re.sub(r"[^\w.-]+", "-", test.name)
         if test.motion is None:
-            write_text(folder / f"{name}.csv", posed_table(test, asked, structure, where))
+            write_text(folder / f"{name}.csv", _posed_table(test, asked, structure, where))
             tests.append({**test.model_dump(exclude={"motion", "scale"}), "file": f"{name}.csv"})
             continue
         load_motion(test.motion, test.scale, test.baseline)
         if motions.setdefault(Path(test.motion).name, test.motion) != test.motion:
             key = f"tests.{test.name}.motion"
             raise InputError(where, key, "expected motions in files of different names")
-        readings = checked_test(read_readings(test, asked, structure, where), structure, test.file)
+        readings = _read_readings(test, asked, structure, where)
+        with _by_key(asked, where):
+            readings = checked_test(readings, structure, test.file)
         title = f"measured test {test.name}"
         sources = ", ".join(Path(one).name for one in (test.file, test.accelerometers) if one)
         readings.attrs = {"Conventions": "CF-1.11", "title": title, "source": Path(test.file).name,
@@ -88,28 +94,29 @@ def _fill(asked, folder, where):
     write_campaign_file(folder, header, asked.name, inside, asked.sensors.model_dump(), tests)
 
 
-def read_readings(test, asked, structure, where):
-    """Readings of one test.
+@contextlib.contextmanager
+def _by_key(asked, where, key=None):
+    """Name the key of the map, ``key`` or what the fault names, of all faults but those of a line or a whole file."""
+    try:
+        yield
+    except InputError as error:
+        if error.where == str(where) or not error.key or error.key.startswith("line "):
+            raise
+        if error.key in TableLayout.model_fields:
+            wrong = f"{error.where}: {error.expected}"
+            raise InputError(where, f"layout.{error.key}", wrong) from None
+        if key is None:
+            mapped = [f"columns.{one}" for one in asked.columns if f"{one}.".startswith(f"{error.key}.")]
+            mapped += ["time"] * error.key.startswith("time")
+            mapped += ["displacement_unit"] * error.key.endswith("_displacement")
+            key = (*mapped, "columns")[0]
+        elif not error.key.startswith("column "):
+            raise
+        raise InputError(where, key, str(error)) from None
 
-    Parameters
-    ----------
-    test : ImportedTest
-    asked : ImportMap
-    structure : Structure
-        Structure by which accelerometer channels and displacement transducers are distinguished from markers.
-    where : str
-        Map that an error names.
 
-    Returns
-    -------
-    xarray.Dataset
-        As in a campaign's test file, not yet checked against the structure; NaN along directions without a column.
-
-    Raises
-    ------
-    InputError
-        A column that is missing or holds text, an unknown unit, times that go back, a clock with gaps.
-    """
+def _read_readings(test, asked, structure, where):
+    """Readings of one test, as a campaign's file has them; NaN along directions without a column."""
     channels = [name for name in asked.columns if name in accelerometer_channels(structure)]
     transducers = [name for name in asked.columns if name in transducer_names(structure)]
     markers = [name for name in asked.columns if name not in (*channels, *transducers)]
@@ -124,10 +131,12 @@ def read_readings(test, asked, structure, where):
     for body in dict.fromkeys(key.rpartition(".")[0] for key in posed):
         time, filmed = _markers_of_poses(test.file, body, posed, asked, structure, where)
         for name in filmed.keys() & read.keys():
-            raise InputError(
-                where, f"columns.{name}.x", f"expected none; {name} is read from the poses of {body}"
-            )
+            wrong = f"expected none; {name} is read from the poses of {body}"
+            raise InputError(where, f"columns.{name}.x", wrong)
         read |= filmed
+    read = {name: values for name, values in read.items() if np.isfinite(values).any()}
+    if not read:
+        raise InputError(where, "columns", f"expected readings of a marker in {test.file}; all are missing")
     names, values = list(read), np.stack([*read.values()], axis=1)
     variables = {"marker_displacement": (("time", "marker", "axis"), values, {"units": "m"})}
     coordinates = {"time": ("time", time, {"units": "s"}), "marker": names, "axis": list(AXES)}
@@ -140,9 +149,12 @@ def read_readings(test, asked, structure, where):
         time_acc, read = _columns_of(source, sensors, asked, kind, where)
         if kind == "displacement":
             for column, key in zip(read.T, sensors, strict=True):
-                column -= _rest(time_acc, column, asked.rest, source, key)
-        variables[variable] = (("time_acc", dimension), read, {"units": unit})
-        coordinates |= {"time_acc": ("time_acc", time_acc, {"units": "s"}), dimension: sensors}
+                column -= _rest(time_acc, column, asked, where, f"{source}: {key}")
+        known = np.isfinite(read).any(axis=0)
+        if known.any():
+            variables[variable] = (("time_acc", dimension), read[:, known], {"units": unit})
+            coordinates["time_acc"] = ("time_acc", time_acc, {"units": "s"})
+            coordinates[dimension] = np.array(sensors)[known]
     return xr.Dataset(variables, coordinates)
 
 
@@ -153,12 +165,10 @@ def _displacements(source, keys, asked, where):
     for key, column in zip(keys, readings.T, strict=True):
         name, _, axis = key.rpartition(".")
         if axis not in AXES or not name:
-            wrong = (
-                "expected MARKER.x, MARKER.y, MARKER.z, an accelerometer channel or a displacement transducer"
-            )
-            raise InputError(where, f"columns.{key}", wrong)
+            known = "MARKER.x, MARKER.y, MARKER.z, an accelerometer channel or a displacement transducer"
+            raise InputError(where, f"columns.{key}", f"expected {known}")
         values = found.setdefault(name, np.full((len(time), len(AXES)), np.nan))
-        values[:, AXES.index(axis)] = column - _rest(time, column, asked.rest, source, key)
+        values[:, AXES.index(axis)] = column - _rest(time, column, asked, where, f"{source}: {key}")
     return time, found
 
 
@@ -173,19 +183,17 @@ def _markers_of_poses(source, body, posed, asked, structure, where):
     own = [marker for marker in structure.file.markers if marker.body == body]
     if not own:
         raise InputError(where, f"columns.{body}.x", f"expected markers of {body} in the structure")
-    time, columns = _pose_columns(
-        source, body, [key for key in posed if key.startswith(f"{body}.")], asked, where
-    )
-    position, rotation, _ = poses_of_columns(columns, source, body)
+    keys = [key for key in posed if key.startswith(f"{body}.")]
+    time, columns = _pose_columns(source, body, keys, asked, where)
+    with _by_key(asked, where):
+        position, rotation, _ = poses_of_columns(columns, source, body)
     found = {}
     for marker in own:
         place = position + rotation @ np.array(marker.position)
-        start = (
-            [_rest(time, column, asked.rest, source, f"{body}.x") for column in place.T]
-            if asked.rest
-            else 0.0
-        )
-        found[marker.name] = place - (start or place[np.isfinite(place[:, 0]).argmax()])
+        start = place[np.isfinite(place[:, 0]).argmax()]
+        if asked.rest:
+            start = [_rest(time, column, asked, where, f"{source}: {body}.x") for column in place.T]
+        found[marker.name] = place - start
     return time, found
 
 
@@ -197,9 +205,8 @@ def _pose_columns(source, body, keys, asked, where):
         if key in turns[1:] and (
             asked.columns[key].reversed or asked.columns[key].unit or asked.rotation_unit != "rad"
         ):
-            raise InputError(
-                where, f"columns.{key}", "expected a quaternion's column as it is, without unit or reversed"
-            )
+            wrong = "expected a quaternion's column as it is, without unit or reversed"
+            raise InputError(where, f"columns.{key}", wrong)
     columns = {}
     for names, kind in ((places, "displacement"), (turns, "rotation")):
         mapped = [name for name in names if name in keys]
@@ -222,8 +229,9 @@ def _check_once(names, asked, where):
 
 def _columns_of(source, names, asked, kind, where):
     """Times (n_times,) and readings (n_times, n_names) of a table, in SI."""
-    table = read_table(source, asked.layout)
-    time = _clock(table, asked, where)
+    with _by_key(asked, where, "time"):
+        table = read_table(source, asked.layout)
+        time = _clock(table, asked, where)
     columns = []
     for name in names:
         column = asked.columns[name]
@@ -231,9 +239,11 @@ def _columns_of(source, names, asked, kind, where):
         if unit is None:
             raise InputError(where, f"{kind}_unit", f"missing key; {name} needs it")
         size = unit_size(kind, unit, where, f"{key}.unit" if column.unit else f"{kind}_unit")
-        read = table.column(column.column, -size if column.reversed else size, kind)
-        if np.isnan(read).all():
-            raise InputError(table.source, f"column '{column.column}'", "expected readings; all are missing")
+        with _by_key(asked, where, key):
+            read = table.column(column.column, -size if column.reversed else size, kind)
+        if np.isnan(read).all() and len(asked.tests) == 1:
+            wrong = f"expected readings in '{column.column}' of {table.source}; all are missing"
+            raise InputError(where, key, wrong)
         columns.append(read + 0.0)  # no minus zero
     return time, np.column_stack(columns)
 
@@ -241,53 +251,34 @@ def _columns_of(source, names, asked, kind, where):
 def _clock(table, asked, where):
     """Times that increase [s]."""
     name = asked.time.column
-    time = table.column(name, unit_size("time", asked.time.unit or "s", where, "time.unit"), "time")
+    time = table.times(name, unit_size("time", asked.time.unit or "s", where, "time.unit"))
     if np.isnan(time).any():
-        line = table.lines[int(np.argmax(np.isnan(time)))]
-        raise InputError(table.source, f"line {line}, {name}", "expected a time")
-    back = np.flatnonzero(np.diff(time) <= 0.0)
-    if len(back):
-        before, after = time[back[0] : back[0] + 2]
-        wrong = f"expected times that increase; {after:g} s follows {before:g} s"
-        raise InputError(table.source, f"line {table.lines[back[0] + 1]}, {name}", wrong)
+        raise table.fault(table.lines[int(np.argmax(np.isnan(time)))], name, "expected a time")
+    check_increase(time, table.lines, table.source, name)
     missing = missing_rows(time) if len(time) > 1 else np.zeros(0)
     if missing.any() and not asked.fill_gaps:
         row, steps = int(np.argmax(missing > 0)), np.diff(time)
         raise InputError(
-            table.source, f"line {table.lines[row + 1]}, {name}",
-            f"expected an even clock; {steps[row]:.4g} s after {time[row]:g} s lie between two rows "
-            f"{np.median(steps):.4g} s apart elsewhere, {np.count_nonzero(missing)} such gaps in all: fill_gaps makes "
-            "them gaps of the readings",
+            where, "fill_gaps",
+            f"{table.source}: line {table.lines[row + 1]}, {name}: expected an even clock; {steps[row]:.4g} s after "
+            f"{time[row]:.13g} s lie between two rows {np.median(steps):.4g} s apart elsewhere, "
+            f"{np.count_nonzero(missing)} such gaps in all: fill_gaps makes them gaps of the readings",
         )  # fmt: skip
     return time
 
 
-def _rest(time, column, length, source, key):
-    """Mean reading of the quiet start."""
-    if length == 0.0:
+def _rest(time, column, asked, where, name):
+    """Mean reading of the quiet start; zero of a column without readings, which the check of a test finds so."""
+    if asked.rest == 0.0 or np.isnan(column).all() or stuck(column):
         return 0.0
-    resting = column[(time <= time[0] + length) & np.isfinite(column)]
+    resting = column[(time <= time[0] + asked.rest) & np.isfinite(column)]
     if not len(resting):
-        raise InputError(source, key, f"expected a reading in the first {length:g} s of rest")
+        raise InputError(where, "rest", f"{name}: expected a reading in the first {asked.rest:g} s of rest")
     return resting.mean()
 
 
-def posed_table(test, asked, structure, where):
-    """Text of a CSV table with ``time_s`` and the columns of the free body; see `read_poses`.
-
-    Parameters
-    ----------
-    test : ImportedTest
-    asked : ImportMap
-    structure : Structure
-    where : str
-        Map that an error names.
-
-    Raises
-    ------
-    InputError
-        A key that is no pose of the free body; faults of the table as of `read_readings`.
-    """
+def _posed_table(test, asked, structure, where):
+    """Text of a CSV table with ``time_s`` and the columns of the free body; see `read_poses`."""
     body = structure.body_names[free_body(structure)[0]]
     known = [f"{body}.{part}" for part in (*AXES, ANGLE, *_TURNS)]
     for key in asked.columns:

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 import zipfile
 from decimal import Decimal
 from pathlib import Path
@@ -13,7 +14,7 @@ from pydantic import Field
 from blockshake.errors import InputError
 from blockshake.files import read_bytes, read_foreign_text
 from blockshake.tables.numbers import missing_code, plain_number
-from blockshake.tables.units import known_unit, unit_of_name
+from blockshake.tables.units import UNIT_NAMES, known_unit, unit_of_name
 from blockshake.validation import Strict
 
 _SEPARATORS = "\t;|,"  # looked for in the header in this order; white space where it has none of them
@@ -22,6 +23,12 @@ WORKBOOK = (".xlsx", ".xlsm")
 _MOST_BYTES, _MOST_CELLS = 5e8, 2e7  # a workbook of a few kilobytes may claim any number of them
 _MOST_NAMES = 20  # columns that an error lists
 SIGNS = {".": "point", ",": "comma"}
+# 14:03:21,250 or 2:03:21 PM, behind any date; `datetime` objects of a workbook print so
+_CLOCK = re.compile(
+    r"(?:(\d[^:]{0,30}?)[T,\s]{1,3})?(\d{1,2}):([0-5]\d):([0-5]\d(?:[.,]\d{1,9})?)(?:\s?([AP])M|Z)?",
+    re.ASCII | re.IGNORECASE,
+)
+_DAY = 86400  # s
 
 
 class TableLayout(Strict):
@@ -36,27 +43,12 @@ class TableLayout(Strict):
 
 
 class CellTable(NamedTuple):
-    """Cells of a table below its header.
+    """Cells of a table below its header: text, numbers, or None."""
 
-    Attributes
-    ----------
-    source : str
-        File, and ``#SHEET`` of a workbook.
-    names : list of str
-        Of the columns; 1, 2, ... where the header's line holds numbers.
-    notes : list of list
-        Cells between the names and the numbers, such as units.
-    lines : list of int
-        Line of every row in the file.
-    rows : list of list
-        Cells: text, numbers, or None.
-    decimal : str
-    """
-
-    source: str
-    names: list
-    notes: list
-    lines: list
+    source: str  # file, and ``#SHEET`` of a workbook
+    names: list  # of the columns; 1, 2, ... where the header's line holds numbers
+    notes: list  # rows between the names and the numbers, such as units
+    lines: list  # of every row in the file, from 1
     rows: list
     decimal: str
 
@@ -75,38 +67,72 @@ class CellTable(NamedTuple):
         -----
         The product is of decimals, so that each number is the nearest one to its written digits.
         """
-        if self.names.count(name) != 1:
-            others = f"there are {', '.join(self.names[:_MOST_NAMES])}"
-            wrong = f"expected this column once; {'it stands twice' if name in self.names else others}"
-            raise InputError(self.source, f"column '{name}'", wrong)
-        column = self.names.index(name)
+        cells = self._cells(name)
         if kind is not None:
-            self._check_unit(column, kind, size)
-        cells = [row[column] if column < len(row) else None for row in self.rows]
-        keys = [f"line {line}, {name}" for line in self.lines]
-        numbers = [self._number(cell, key) for cell, key in zip(cells, keys, strict=True)]
+            self._check_unit(name, kind, size)
+        numbers = [self._number(cell, line, name) for cell, line in zip(cells, self.lines, strict=True)]
         written = np.array([np.nan if number is None else number for number in numbers], dtype=float)
         coded = None if kind == "time" else missing_code(written)
         if coded is not None:
             wrong = f"'{cells[coded]}' looks like a code for a missing one, which an empty cell says"
-            raise InputError(self.source, keys[coded], f"expected a reading; {wrong}")
+            raise InputError(self.source, f"line {self.lines[coded]}, {name}", f"expected a reading; {wrong}")
         try:
             return np.array([np.nan if number is None else float(number * size) for number in numbers])
         except ArithmeticError:
             raise InputError(self.source, f"column '{name}'", "expected numbers of usual size") from None
 
-    def _check_unit(self, column, kind, size):
-        stated = [unit_of_name(self.names[column], kind)]
+    def times(self, name, size=Decimal(1)):
+        """Times of a column, float64 (n_rows,) [s], as of `column`; clocks of the day count from a midnight.
+
+        The next day begins where the date changes or, without dates, where the clock falls by more than half a day.
+        """
+        cells = self._cells(name)
+        clocks = [_CLOCK.fullmatch(str(cell).strip()) for cell in cells]
+        if size != 1 or not any(clocks):
+            return self.column(name, size, "time")
+        if None in clocks:
+            row = clocks.index(None)
+            wrong = f"expected a clock of the day such as 14:03:21.250, not '{cells[row] or ''}'"
+            raise self.fault(self.lines[row], name, wrong)
+        days, times, before, last = 0, [], clocks[0][1], 0
+        for clock in clocks:
+            date, hours, minutes, seconds, half = clock.groups()
+            hours = int(hours) if half is None else int(hours) % 12 + 12 * (half in "Pp")
+            now = 3600 * hours + 60 * int(minutes) + Decimal(seconds.replace(",", "."))
+            days += date != before or (date is None and last - now > _DAY / 2)
+            before, last = date, now
+            times.append(float(_DAY * days + now))
+        return np.array(times)
+
+    def _cells(self, name):
+        """Cells of the one column of a name."""
+        if self.names.count(name) != 1:
+            others = f"there are {', '.join(filter(None, self.names[:_MOST_NAMES]))} in the header"
+            wrong = f"expected this column once; {'it stands twice' if name in self.names else others}"
+            key = f"column '{name}'"  # where there is one alone, another sign separates
+            key, wrong = ("separator", f"{key}: {wrong}") if len(self.names) == 1 else (key, wrong)
+            raise InputError(self.source, key, wrong)
+        column = self.names.index(name)
+        return [row[column] if column < len(row) else None for row in self.rows]
+
+    def _check_unit(self, name, kind, size):
+        column, stated = self.names.index(name), [unit_of_name(name, kind)]
         noted = (str(row[column]) for row in self.notes if column < len(row) and row[column])
         stated += [known_unit(note) for note in noted if note != "min"]  # of rows of min, max and mean
         for unit in filter(None, stated):
             if unit != (kind, abs(size)):
-                wrong = (
-                    f"expected the unit of {kind} that was given; the header has another one, of {unit[0]}"
-                )
-                raise InputError(self.source, f"column '{self.names[column]}'", wrong)
+                given, found = UNIT_NAMES[kind, abs(size)], UNIT_NAMES[unit]
+                wrong = f"expected {given}; the header says {found}"
+                raise InputError(self.source, f"column '{name}'", wrong)
 
-    def _number(self, cell, key):
+    def fault(self, line, name, wrong, key="data"):
+        """Error of a cell; in the first row, which shows whether the layout is right, of a key of `TableLayout`."""
+        place = f"line {line}, {name}"
+        return InputError(
+            self.source, *((key, f"{place}: {wrong}") if line == self.lines[0] else (place, wrong))
+        )
+
+    def _number(self, cell, line, name):
         """A cell as a decimal, or None for a gap."""
         text = "" if cell is None else str(cell).strip()
         if text.lower() in GAPS:
@@ -116,11 +142,12 @@ class CellTable(NamedTuple):
         try:
             return Decimal(number)
         except ArithmeticError:
-            raise InputError(self.source, key, f"expected a number of usual size, not '{text}'") from None
+            raise self.fault(line, name, f"expected a number of usual size, not '{text}'") from None
         except TypeError:
             wrong = f"expected a number with a decimal {SIGNS[self.decimal]}, or nothing, not '{text}'"
-            hint = "; thousands have no sign between them" if {".", ","} & set(text) else ""
-            raise InputError(self.source, key, wrong + hint) from None
+            wrong += "; thousands have no sign between them" if {".", ","} & set(text) else ""
+            swapped = cell_number(text, "." if self.decimal == "," else ",")
+            raise self.fault(line, name, wrong, "decimal" if swapped else "data") from None
 
 
 def cell_number(text, decimal):
@@ -147,28 +174,28 @@ def read_table(source, layout):
     InputError
         Missing or damaged file, unknown sheet, nothing below the header.
     """
-    path, sheet = path_and_sheet(source)
+    path, _, sheet = str(source).partition("#") if not Path(source).exists() else (source, "", "")
+    path = Path(path)
     if path.suffix.lower() in WORKBOOK:
-        source, rows = sheet_rows(path, sheet)
+        source, rows = _sheet_rows(path, sheet)
     else:
         rows = _text_rows(path, layout)
     rows = [(line, row) for line, row in rows if any(cell not in (None, "") for cell in row)]
     first, header = next(((line, row) for line, row in rows if line >= layout.header), (None, None))
     if header is None:
         wrong = f"expected names of columns in line {layout.header}, and rows; it is empty"
-        raise InputError(source, "", wrong)
+        raise InputError(source, "header", wrong)
     names = ["" if cell is None else str(cell).strip() for cell in header]
-    decimal = layout.decimal
-    if all(cell_number(name, decimal) for name in names):
+    if all(cell_number(name, layout.decimal) or _CLOCK.fullmatch(name) for name in names):
         names, first = [str(number + 1) for number in range(len(names))], first - 1
     start = layout.data or first + 1
     below = [(line, row) for line, row in rows if line >= start]
     if not below:
         wrong = f"expected rows of numbers below the names in line {first}; there is none"
-        raise InputError(source, "", wrong)
+        raise InputError(source, "data" if layout.data else "header", wrong)
     notes = [row for line, row in rows if first < line < start]
     lines, cells = zip(*below, strict=True)
-    return CellTable(str(source), names, notes, list(lines), list(cells), decimal)
+    return CellTable(str(source), names, notes, list(lines), list(cells), layout.decimal)
 
 
 def csv_rows(path):
@@ -195,10 +222,16 @@ def csv_rows(path):
     return [[cell_number(cell, ",") or cell for cell in row] for row in rows]
 
 
-def path_and_sheet(source):
-    """Path of a file, and the name of the sheet behind ``#``."""
-    path, _, sheet = str(source).partition("#") if not Path(source).exists() else (str(source), "", "")
-    return Path(path), sheet
+def csv_records(path):
+    """Rows of a CSV as by `csv_rows`, mappings of the header's names to cells; all are named and of one length."""
+    header, *rows = csv_rows(path) or [[]]
+    for name in header:
+        if not name or header.count(name) > 1:
+            raise InputError(path, name, "expected every column to have a name of its own")
+    for number, row in enumerate(rows, start=1):
+        if len(row) != len(header):
+            raise InputError(path, f"row {number}", f"expected {len(header)} cells, not {len(row)}")
+    return [dict(zip(header, row, strict=True)) for row in rows]
 
 
 def _text_rows(path, layout):
@@ -232,12 +265,11 @@ def _blank_rows(lines, layout, path):
     for number, row in filled:
         if number >= (layout.data or 0) and len(row) != len(filled[0][1]):
             wrong = f"expected {len(filled[0][1])} cells between blanks as in line {filled[0][0]}, found {len(row)}"
-            hint = "--header of a line of numbers counts the columns"
-            raise InputError(path, f"line {number}", f"{wrong}; {hint}")
+            raise InputError(path, "header", f"line {number}: {wrong}; a line of numbers counts the columns")
     return rows
 
 
-def sheet_rows(path, sheet):
+def _sheet_rows(path, sheet):
     """Rows of a sheet by number from 1, with the name of the source."""
     import openpyxl  # takes long to import
 

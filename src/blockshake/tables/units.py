@@ -19,6 +19,8 @@ UNITS = {
     },
     "rotation": {"rad": Decimal(1), "mrad": _MILLI, "deg": _DEGREE},
 }  # fmt: skip
+# the first of each size
+UNIT_NAMES = {(kind, units[unit]): unit for kind, units in UNITS.items() for unit in reversed(units)}
 _SHOWN = {kind: ", ".join(units) for kind, units in UNITS.items()}
 _SECOND = re.compile(r"sec(?:ond)?s?(?![a-z])")
 _PER_SECOND_SQUARED = re.compile(r"/s/s$|/\(s2\)$|(?<=m)(?:[/_p]|per)?s-?2$")

@@ -177,11 +177,24 @@ def test_draws_of_other_tests_are_others():
     assert (np.abs(shares_of(7, DRAWS)) <= 1.0).all()
 
 
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "cp1252"])
+def test_a_table_of_tests_is_read_as_a_spreadsheet_writes_it(tmp_path, encoding):
+    (tmp_path / "column.yaml").write_text(yaml.safe_dump(STRUCTURE))
+    table = "name;motion;scale;role;outcome\r\npr\u00fcfung;alkion;1,5;fit;fell\r\nb;alkion;2;sealed;stood\r\n;;;;\r\n"
+    (tmp_path / "tests.csv").write_bytes(table.encode(encoding))
+    mapping = {"name": "good", "structure": "column.yaml", "tests": "tests.csv"}
+    (tmp_path / "campaign.yaml").write_text(yaml.safe_dump(mapping))
+    tests = load_campaign(tmp_path).tests
+    assert {name: test.scale for name, test in tests.items()} == {"pr\u00fcfung": 1.5, "b": 2.0}
+
+
 @pytest.mark.parametrize(
     ("table", "said"),
     [
         ("name,motion,scale,outcome\na,alkion,1.0,fell\n", "tests.csv: expected .* the table has no role"),
-        ("name;role\na;fit\n", "has no name and no role"),
+        ("nom;r\u00f4le\na;fit\n", "has no name and no role"),
+        ("name,name,role\na,b,fit\n", "name: expected every column to have a name of its own"),
+        ("name,role\na,fit,1\n", "row 1: expected 2 cells, not 3"),
         ("name,motion,scale,role,outcome\n", "has no row"),
         (None, "tests: expected a list, or a CSV table"),
     ],

@@ -47,6 +47,45 @@ def test_an_even_clock_is_the_same_whatever_it_shows(rate, zero):
     assert reading_rate(read["time"].to_numpy()) == rate
 
 
+def _printed(rate, zero=0.0, seconds=10.0):
+    """Times of a clock as printed in milliseconds."""
+    return np.round(zero + np.arange(round(seconds * rate) + 1) / rate, 3)
+
+
+# a printed clock of n rows that meets all fractions of a millisecond tells its rate to 1 ms over n of its length;
+# 1000/3 Hz meets one alone, and is even within 10 us at the rate of fewest decimals
+@pytest.mark.parametrize("rate", [512.0, 204.8, 480.0, 1000.0 / 3.0, 500.0, 200.0])
+@pytest.mark.parametrize("zero", [0.0, 0.0002, 43200.0371, 1.7e9])
+@pytest.mark.parametrize("lost", [0, 1, 100])
+def test_a_clock_printed_in_milliseconds_keeps_its_rate(rate, zero, lost):
+    time = _printed(rate, zero)
+    time = np.delete(time, np.arange(700, 700 + lost))
+    test = resting_stack().isel(time=slice(2)).reindex(time=time)
+    read = from_first_reading(test.drop_dims("time_acc"))["time"].to_numpy()
+    assert len(read) == len(time) + lost
+    found = (len(read) - 1) / (read[-1] - read[0])
+    assert found == pytest.approx(rate, rel=1.0001e-6 if rate == 1000.0 / 3.0 else 1e-9)
+    assert np.ptp(np.diff(read)) < 3e-9  # nanoseconds
+    assert reading_rate(read) == pytest.approx(rate, rel=1.0001e-6)
+    kept = np.isin(np.arange(len(read)), np.arange(700, 700 + lost), invert=True)
+    assert np.abs(read[kept] - (time - time[0])).max() <= 0.00101  # half a digit of each, and of the first
+
+
+def test_an_uneven_clock_stays_uneven():
+    """Also in milliseconds: its times lie farther from any even grid than half a digit."""
+    jitter = np.random.default_rng(4).uniform(-1.5e-3, 1.5e-3, 2001)
+    time = np.round(np.arange(2001) / 100.0 + jitter, 3)
+    test = resting_stack().drop_dims("time_acc").assign_coords(time=time - time[0])
+    np.testing.assert_allclose(from_first_reading(test)["time"], time - time[0], atol=1e-9)
+
+
+def test_a_clock_in_hundredths_that_lacks_a_row_is_no_slower_one():
+    """One row of 100 Hz that is lost may look like 99.9 Hz printed in hundredths."""
+    time = np.delete(np.arange(2002) / 100.0, 900)
+    test = resting_stack().drop_dims("time_acc").assign_coords(time=time)
+    np.testing.assert_allclose(from_first_reading(test)["time"], np.arange(2002) / 100.0, atol=1e-9)
+
+
 def test_rows_that_a_clock_lacks_become_gaps():
     whole = resting_stack()
     test = whole.isel(time=np.r_[0:100, 140:2001], time_acc=np.r_[0:900, 1000 : whole.sizes["time_acc"]])

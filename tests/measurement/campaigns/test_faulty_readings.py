@@ -118,3 +118,32 @@ def test_a_table_without_any_reading_is_refused(tmp_path):
     folder = write_campaign(tmp_path, _spoilt(dead_slab))
     with pytest.raises(InputError, match=r"t1\.nc: marker: expected a marker of the driven body"):
         load_test(load_campaign(folder), "t1")
+
+
+@pytest.mark.parametrize("value", [10.24, -0.999, 99.999, 9.96921e36])
+def test_a_column_stuck_at_a_value_is_a_gap(value, tmp_path):
+    """Also in a test without noise, which tells nothing of its other columns."""
+
+    def stick(values):
+        values[..., 1:] = 0.0
+        values[:, OWN, 0] = value
+
+    folder = write_campaign(tmp_path, _spoilt(stick))
+    test = load_test(load_campaign(folder), "t1")
+    assert "block-1-lower" not in test["marker"].values
+    line = f"{value:.4g} m throughout, taken as gaps: block-1-lower.x"
+    assert any(line in remark for remark in campaign_lines(folder))
+
+
+def test_a_stuck_accelerometer_and_a_stuck_slab_are_named(tmp_path):
+    test = resting_stack().isel(channel=[0])
+    test["accelerometer"].values[:] = -999.0
+    lines = campaign_lines(write_campaign(tmp_path, test))
+    assert any("-999 m/s2 throughout, taken as gaps: slab-acc-x" in line for line in lines)
+
+    def stick(values):
+        values[:, [place for place, name in enumerate(MARKERS) if name.startswith("slab")]] = 10.24
+
+    folder = write_campaign(tmp_path, _spoilt(stick))
+    with pytest.raises(InputError, match=r"expected a marker of the driven body.*; 10\.24 m throughout"):
+        load_test(load_campaign(folder), "t1")

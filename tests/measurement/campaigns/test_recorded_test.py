@@ -200,17 +200,17 @@ def test_a_spreadsheet_of_readings_goes_in(names, tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "time_s: expected a header with time_s"),
+        ("", "header: expected names of columns in line 1, and rows; it is empty"),
         ("a,b\n1,2\n", "time_s: expected a header with time_s"),
         ("time_s\n0\n0.1\n", "time_s: expected a header with time_s, other columns"),
         (
             "time_s,slab-face.x\n\n0,0\n0.1,far\n",
-            "line 4, slab-face.x: expected a number or nothing, not 'far'",
+            "line 4, slab-face.x: expected a number with a decimal point, or nothing, not 'far'",
         ),
-        ("time_s,slab-face.x\n0,0\n0.1\n", "line 3: expected 2 cells, not 1"),
+        ("time_s,slab-face.x\n0,0\n0.1,0,0\n", "line 3: expected at most 2 cells, found 3"),
         (
             'time_s,slab-face.x\n0,"0\n0.1,0\n',
-            "line 3: expected cells between commas; unexpected end of data",
+            "line 3: expected cells between ','; unexpected end of data",
         ),
         ("time_s,slab-face\n0,0\n0.1,0\n", "slab-face: expected columns MARKER.x"),
         (

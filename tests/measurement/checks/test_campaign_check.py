@@ -249,3 +249,16 @@ def test_the_example_campaigns_pass(name):
     lines = campaign_lines(folder)
     assert len(lines) == 7
     assert lines[-1] == "no inconsistency found"
+
+
+def test_a_sensor_that_one_test_lacks_is_remarked(tmp_path):
+    folder = write_campaign(tmp_path, resting_stack())
+    test = resting_stack()
+    test["marker_displacement"].values[:, 5] = 0.5  # named by its fault
+    test.sel(marker=MARKERS[:-1]).isel(channel=[0]).to_netcdf(folder / "t2.nc")
+    campaign = folder / "campaign.yaml"
+    listed = campaign.read_text().rstrip().splitlines()[-1]
+    campaign.write_text(f"{campaign.read_text().rstrip()}\n{listed.replace('t1', 't2')}\n")
+    lines = campaign_lines(folder)
+    assert f"  t2: no readings of {MARKERS[-1]}, block-1-acc-x, which other tests have" in lines
+    assert sum("no readings of" in line for line in lines) == 1

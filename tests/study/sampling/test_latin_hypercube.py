@@ -117,8 +117,8 @@ def test_design_csv_has_one_row_a_sample_and_loads_to_the_same_values(design, tm
     [
         ("friction.a.b\n", "one row a sample"),
         ("friction.a.b,friction.a.b\n1,2\n", "name of its own"),
-        ("friction.a.b,friction.a.c\n1\n", "sample 0: expected 2 values, not 1"),
-        ("friction.a.b\n1\nnan\n", "sample 1, friction.a.b: expected a finite number, not 'nan'"),
+        ("friction.a.b,friction.a.c\n1\n", "row 1: expected 2 cells, not 1"),
+        ("friction.a.b\n1\nnan\n", "row 2, friction.a.b: expected a finite number, not 'nan'"),
         ("friction.a.b\nx\n", "finite number"),
     ],
 )

@@ -92,9 +92,8 @@ def _record(lines, index, start, real, series, layout, where):
         step = positive_number(entries[1], where, keys[1]) / count
         assumed = f"a time step of {step:g} s, the length over the number of values"
     else:
-        raise InputError(
-            where, keys[0], f"expected the time step in ms, or the length in s in entry {_LENGTH}"
-        )
+        wrong = f"expected the time step in ms, or the length in s in entry {_LENGTH}"
+        raise InputError(where, keys[0], wrong)
     checks = HeaderChecks(where, values, step)
     checks.length(keys[1], entries[1])
     checks.length(line, series.group(3), slack=1.0)  # whole seconds, rounded or cut
@@ -122,8 +121,7 @@ def _columns(fortran, where, line):
     """Columns and width of a Fortran format such as ``8F10.5`` or ``1E15.6``."""
     match = _FORTRAN.match(fortran)
     if not match:
-        raise InputError(
-            where, f"line {line}", f"expected a Fortran format such as (8F10.3), found '({fortran})'"
-        )
+        wrong = f"expected a Fortran format such as (8F10.3), found '({fortran})'"
+        raise InputError(where, f"line {line}", wrong)
     columns, width = match.group(1) or "1", match.group(2)
     return tuple(positive_number(number, where, f"line {line}, format", int) for number in (columns, width))

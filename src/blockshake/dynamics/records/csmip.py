@@ -47,9 +47,8 @@ def read_csmip(text, where):
             records.append(_record(lines, index, start, series, where))
             start = index + 1
     if not records:
-        raise InputError(
-            where, "", "expected a line 'N points of accel data equally spaced at DT sec', found none"
-        )
+        wrong = "expected a line 'N points of accel data equally spaced at DT sec', found none"
+        raise InputError(where, "", wrong)
     return records
 
 
@@ -70,9 +69,8 @@ def _record(lines, index, start, series, where):
     for number, text in enumerate(lines[start:index], start + 1):
         key = f"line {number}"
         if (match := _COUNT.search(text)) and int(match.group(1)) != count:
-            raise InputError(
-                where, key, f"expected {count} points, as the values have, found {match.group(1)}"
-            )
+            wrong = f"expected {count} points, as the values have, found {match.group(1)}"
+            raise InputError(where, key, wrong)
         if match := _INTERVAL.search(text):
             checks.step(key, match.group(1))
         if match := _PEAK.search(text):

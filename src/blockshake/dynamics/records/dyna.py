@@ -51,9 +51,8 @@ def read_dyna(text, where):
             first = index
             break
         if header.setdefault(key.strip().upper(), value.strip()) != value.strip():
-            raise InputError(
-                where, f"line {index + 1}, {key.strip()}", "expected this key once, found two values"
-            )
+            wrong = "expected this key once, found two values"
+            raise InputError(where, f"line {index + 1}, {key.strip()}", wrong)
     for key in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS", "DATA_TYPE"):
         if not header.get(key):
             raise InputError(where, key, "expected this key in the header, with a value")

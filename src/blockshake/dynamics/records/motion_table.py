@@ -43,13 +43,13 @@ def load_motion_table(source, layout, time, columns, unit, time_unit, baseline):
             raise InputError(Argument("columns"), channel, f"expected {', '.join(CHANNELS[:3])}")
     names = [name.strip() for name in columns.values()]
     if len({*names, time.strip()}) <= len(names):
-        raise InputError(
-            Argument("columns"), ", ".join(names), "expected every column once, and not that of the times"
-        )
+        wrong = "expected every column once, and not that of the times"
+        raise InputError(Argument("columns"), ", ".join(names), wrong)
     table = read_table(source, layout)
     where = table.source
-    read = {channel: _finite(table, name, size, kind) for channel, name in columns.items()}
-    at = _finite(table, time, unit_size("time", time_unit, Argument("time_unit"), time_unit), "time")
+    read = {key: _finite(table, name, table.column(name, size, kind)) for key, name in columns.items()}
+    at = table.times(time, unit_size("time", time_unit, Argument("time_unit"), time_unit))
+    at = _finite(table, time, at)
     check_times(at, table.lines, where, time)
     if len(at) < 2:
         raise InputError(where, "", f"expected at least two rows, found {len(at)}")
@@ -63,10 +63,8 @@ def load_motion_table(source, layout, time, columns, unit, time_unit, baseline):
     return settle(motion, baseline, where)
 
 
-def _finite(table, name, size, kind):
-    """A column without gaps."""
-    values = table.column(name, size, kind)
+def _finite(table, name, values):
+    """Values of a column without gaps."""
     if not np.isfinite(values).all():
-        line = table.lines[int(np.argmin(np.isfinite(values)))]
-        raise InputError(table.source, f"line {line}, {name}", "expected a finite number")
+        raise table.fault(table.lines[int(np.argmin(np.isfinite(values)))], name, "expected a finite number")
     return values

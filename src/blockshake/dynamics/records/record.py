@@ -161,9 +161,8 @@ def _series(cells, count, where, count_key):
     short = [cell for cell, behind in zip(cells, digits, strict=True) if behind < most]
     if 0 < len(short) <= max(1, _FEW * len(cells)):  # 1.23E-0 for 1.23E-05
         text, line = short[0]
-        raise InputError(
-            where, f"line {line}", f"expected as many digits as elsewhere, found '{text}': it is cut short"
-        )
+        wrong = f"expected as many digits as elsewhere, found '{text}': it is cut short"
+        raise InputError(where, f"line {line}", wrong)
     coded = missing_code(values)
     if coded is not None:
         text, line = cells[coded]

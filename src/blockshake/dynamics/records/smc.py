@@ -82,7 +82,6 @@ def _header(lines, first, layout, where, name):
     count, columns, width = layout
     texts = [text for line in lines[first : first + count // columns] for text in cut_columns(line, width)]
     if len(texts) != count:
-        raise InputError(
-            where, f"line {first + 1}", f"expected {count} {name} from here on, found {len(texts)}"
-        )
+        wrong = f"expected {count} {name} from here on, found {len(texts)}"
+        raise InputError(where, f"line {first + 1}", wrong)
     return texts

@@ -13,34 +13,37 @@ _MOST_DECIMALS = 9  # of printed times
 _FEWEST_ROWS = 20  # below it a table may be sparse on purpose
 
 
-def check_times(time, lines, where, name, row="line"):
-    """Refuse times that do not increase, and gaps in a series that is even otherwise, which no line may bridge.
+def check_increase(time, lines, where, name, row="line"):
+    """Refuse times that do not increase.
 
     ``time`` (n_rows,) [s]; ``lines``: line of every row in the file ``where``, or another number that ``row`` names;
     ``name`` of the column.
     """
-    steps = np.diff(time)
-    back = np.flatnonzero(steps <= 0.0)
+    back = np.flatnonzero(np.diff(time) <= 0.0)
     if len(back):
         before, after = time[back[0] : back[0] + 2]
-        raise InputError(
-            where, f"{row} {lines[back[0] + 1]}, {name}",
-            f"expected times that increase from row to row; {after:g} s follows {before:g} s",
-        )  # fmt: skip
+        wrong = f"expected times that increase; {after:.13g} s follows {before:.13g} s"
+        raise InputError(where, f"{row} {lines[back[0] + 1]}, {name}", wrong)
+
+
+def check_times(time, lines, where, name, row="line"):
+    """Refuse times as `check_increase`, and gaps in a series that is even otherwise, which no line may bridge."""
+    check_increase(time, lines, where, name, row)
+    steps = np.diff(time)
     usual = float(np.median(steps)) if len(steps) else 0.0
     wide = _gaps(time, steps, usual) if len(time) >= _FEWEST_ROWS else np.zeros(0, dtype=bool)
     if wide.any():
         index = int(np.argmax(wide))
         raise InputError(
             where, f"{row} {lines[index + 1]}, {name}",
-            f"expected rows {usual:.4g} s apart as elsewhere; {steps[index]:.4g} s after {time[index]:g} s have none, "
-            f"{int(wide.sum())} such gaps in all: write the rows that are missing, or split the motion",
+            f"expected rows {usual:.4g} s apart as elsewhere; {steps[index]:.4g} s after {time[index]:.13g} s have "
+            f"none, {int(wide.sum())} such gaps in all: write the rows that are missing, or split the motion",
         )  # fmt: skip
 
 
 def _gaps(time, steps, usual):
     """Whether each step is a gap: of even steps, of even steps but for the last printed digit, or far out of all."""
-    for digit in (0.0, _last_digit(time)):
+    for digit in (0.0, last_digit(time)):
         wide = steps > _GAP * usual + digit
         even = np.abs(steps[~wide] - usual) <= _EVEN * usual + digit
         if wide.any() and wide.mean() <= _WIDE_SHARE and even.mean() >= _EVEN_SHARE:
@@ -48,7 +51,7 @@ def _gaps(time, steps, usual):
     return steps > _FAR * np.quantile(steps, _NEARLY_ALL, method="lower")
 
 
-def _last_digit(time):
+def last_digit(time):
     """Unit of the last printed digit of all times [s]; 0 where there are too many digits."""
     printed = (places for places in range(_MOST_DECIMALS) if np.array_equal(np.round(time, places), time))
     return 10.0 ** -next(printed, np.inf)

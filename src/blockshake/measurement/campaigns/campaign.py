@@ -5,7 +5,6 @@ from os.path import isfile  # false, not an error, for a name that no file can h
 from pathlib import Path
 from typing import Annotated, Literal
 
-import pandas as pd
 from pydantic import AfterValidator, Field, model_validator
 
 from blockshake.dynamics.baseline import AUTO, Baseline
@@ -19,6 +18,7 @@ from blockshake.measurement.sensors.instruments import Sensors
 from blockshake.paths import check_plain, file_below
 from blockshake.tables.numbers import plain_number
 from blockshake.tables.shown import Shown
+from blockshake.tables.table_file import csv_records
 from blockshake.validation import Finite, Strict, validated
 
 
@@ -166,9 +166,8 @@ def load_campaign(folder: AnyPath) -> Campaign:
             if getattr(test, key) is not None:
                 check_plain(getattr(test, key), path, f"tests.{test.name}.{key}")
         if known and not isfile(file_below(folder, test.file, path, f"tests.{test.name}.file")):
-            raise InputError(
-                path, f"tests.{test.name}.file", f"expected a file in {folder}; it has no {test.file}"
-            )
+            wrong = f"expected a file in {folder}; it has no {test.file}"
+            raise InputError(path, f"tests.{test.name}.file", wrong)
         if moved:
             file_below(folder, test.motion, path, f"tests.{test.name}.motion")
     check_plain(file.structure, path, "structure")
@@ -191,23 +190,19 @@ def _listed(folder, name, path):
     check_plain(name, path, "tests")
     if not isfile(folder / name):
         raise InputError(path, "tests", f"expected a list, or a CSV table in {folder}; it has no {name}")
-    try:
-        rows = pd.read_csv(folder / name, dtype=str, keep_default_na=False)
-    except (OSError, ValueError) as error:
-        raise InputError(folder / name, "", f"expected a table of comma-separated values; {error}") from None
-    missing = [key for key in ("name", "role") if key not in rows.columns]
-    if missing or rows.empty:
+    rows = csv_records(folder / name)
+    missing = [key for key in ("name", "role") if rows and key not in rows[0]]
+    if missing or not rows:
         wrong = f"has no {' and no '.join(missing)}" if missing else "has no row"
-        raise InputError(
-            folder / name, "", f"expected a row a test and the columns name and role; the table {wrong}"
-        )
+        wrong = f"expected a row a test and the columns name and role; the table {wrong}"
+        raise InputError(folder / name, "", wrong)
     return [
         {
             key: float(cell) if key == "scale" and plain_number(cell) else cell
             for key, cell in row.items()
             if cell
         }
-        for row in rows.to_dict("records")
+        for row in rows
     ]
 
 

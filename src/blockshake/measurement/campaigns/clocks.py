@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
+from blockshake.dynamics.records.times import last_digit
 from blockshake.measurement.sensors.accelerometers import shaken_channels
 from blockshake.measurement.sensors.markers import slab_displacement
 
@@ -84,7 +85,8 @@ def command_start(time, moved, command):
 def missing_rows(time):
     """Number of rows that a clock (n_times,) lacks between each one and the next, int64 (n_times - 1,)."""
     steps = np.diff(time)
-    rows = steps / np.median(steps)
+    # the mean, because 2, 2, 2, 1 ms are printed steps of 1.95 ms; steps of 2 and 3 ms are of one clock
+    rows = steps / steps[steps <= 1.01 * _LACKING * np.median(steps)].mean()
     return np.where(rows > _LACKING, np.rint(rows) - 1, 0).astype(np.int64)
 
 
@@ -98,8 +100,9 @@ def from_first_reading(test):
     for name in _clocks(test):
         time = test[name].to_numpy()
         rows = np.concatenate([[0], np.cumsum(missing_rows(time) + 1)])
-        test = test.reindex({name: np.interp(np.arange(rows[-1] + 1), rows, time)})
-    return _with_clocks(test, lambda time: _even(time - zero))
+        whole = np.interp(np.arange(rows[-1] + 1), rows, time)
+        test = _at_times(test.reindex({name: whole}), name, _even(whole - zero, last_digit(time)))
+    return test
 
 
 def from_command(test, structure, command):
@@ -154,28 +157,40 @@ def reading_rate(time):
 
 def since(test, zero, first=0.0):
     """The test with times that count from ``zero``, without readings before the new time ``first`` [s]."""
-    moved = _with_clocks(test, lambda time: np.round(time - zero, _DIGITS))
-    return moved.isel({name: np.flatnonzero(moved[name].to_numpy() >= first) for name in _clocks(moved)})
+    for name in _clocks(test):
+        time = np.round(test[name].to_numpy() - zero, _DIGITS)
+        test = _at_times(test, name, time).isel({name: np.flatnonzero(time >= first)})
+    return test
 
 
 def _clocks(test):
     return [name for name in ("time", "time_acc") if name in test.coords]
 
 
-def _with_clocks(test, changed):
-    """The test with each of its clocks changed by a function of times."""
-    return test.assign_coords(
-        {name: (name, changed(test[name].to_numpy()), test[name].attrs) for name in _clocks(test)}
-    )
+def _at_times(test, clock, time):
+    return test.assign_coords({clock: (clock, time, test[clock].attrs)})
 
 
-def _even(time):
-    steps = np.arange(len(time))
-    rate = steps[-1] / (time[-1] - time[0])
-    for decimals in range(_DIGITS):
-        even = round(float(time[0]), 6) + steps / (round(rate, decimals) or rate)
-        if np.abs(even - time).max() < _EVEN:
-            return np.round(even, _DIGITS)
+def _even(time, digit):
+    """Times (n_times,) of the even grid within 10 us of all or, else, within half of their last digit; or as they are.
+
+    The grid has the rate of fewest decimals, and starts as near to the first time as it can.
+    """
+    rows = np.arange(len(time))
+    mean = (time[-1] - time[0]) / rows[-1]
+    if digit > 2.0 * _EVEN:
+        time = np.round(time, 6)  # multiples of the digit again, whatever zero was taken off
+    for width in sorted({2.0 * _EVEN, max(2.0 * _EVEN, 1.001 * digit)}):
+        reach = width / rows[-1]
+        step = scipy.optimize.minimize_scalar(
+            lambda step: np.ptp(time - step * rows), bounds=(mean - reach, mean + reach), method="bounded",
+            options={"xatol": 1e-6 * reach / len(rows)},
+        ).x  # fmt: skip
+        for decimals in range(_DIGITS):
+            even = rows / (round(1.0 / step, decimals) or 1.0)
+            earliest, latest = (time - even).max() - width / 2.0, (time - even).min() + width / 2.0
+            if earliest <= latest:
+                return np.round(even + np.clip(round(float(time[0]), 6), earliest, latest), _DIGITS)
     return np.round(time, _DIGITS)
 
 

@@ -17,6 +17,8 @@ _NOISY = 0.3  # third over first differences: noise has 3, a motion of 10 Hz wit
 _WINDOW = 50  # readings, in which noise changes some
 _RESOLVED = 0.3  # of the readings of the quietest window, that noise changes where its digits are fine enough
 _MANY = 4  # columns that a line spells out
+# beyond which a sensor that reads the same throughout reads nothing: no first reading, and twice gravity
+_STUCK = {"m": 0.01, "m/s2": 20.0}
 _INSTRUMENTS = (
     ("marker_displacement", "time", "marker", "m"),
     ("accelerometer", "time_acc", "channel", "m/s2"),
@@ -47,6 +49,25 @@ class _Fault(NamedTuple):
     p: float
 
 
+def instruments(test):
+    """Each instrument's readings (time, sensor, ...) with their unit, the names of its columns, and their values.
+
+    Generator of (xarray.DataArray, str, list of str, float64 array of shape (n_times, n_columns)).
+    """
+    for variable, clock, dimension, unit in _INSTRUMENTS:
+        if variable in test:
+            readings = test[variable].transpose(clock, dimension, ...)
+            axes = [f".{axis}" for axis in readings["axis"].values] if "axis" in readings.dims else [""]
+            columns = [f"{name}{axis}" for name in readings[dimension].values for axis in axes]
+            yield readings, unit, columns, readings.to_numpy().reshape(-1, len(columns))
+
+
+def stuck(values, unit="m"):
+    """Mask (...) of columns (n_times, ...) that hold one value alone, farther from zero than a sensor at rest."""
+    known, low = np.isfinite(values).sum(axis=0), np.fmin.reduce(values, axis=0)
+    return (known > _SHORTEST) & (low == np.fmax.reduce(values, axis=0)) & (np.abs(low) > _STUCK[unit])
+
+
 def without_faulty(test, structure):
     """The test with such readings as gaps; a sensor without any other reading is left out.
 
@@ -63,34 +84,30 @@ def without_faulty(test, structure):
 
     Notes
     -----
-    A column is held against the others of its body and axis; where these do not change either, against all others of
-    its instrument, if those have noise. In a test without noise equal and constant columns may be true, of a slab that
-    does not rise or of blocks at rest.
+    A column that is `stuck` holds no readings, whatever others do. Any other is held against those of its body and
+    axis; where these do not change either, against all others of its instrument, if those have noise. In a test without
+    noise equal and constant columns may be true, of a slab that does not rise or of blocks at rest.
     """
     faulty = []
-    for variable, clock, dimension, unit in _INSTRUMENTS:
-        if variable not in test:
-            continue
-        readings = test[variable].transpose(clock, dimension, ...)
-        values = readings.to_numpy().reshape(readings.sizes[clock], -1).copy()
+    for readings, unit, columns, values in instruments(test):
+        values, (clock, dimension, *_) = values.copy(), readings.dims
         names = [str(name) for name in readings[dimension].values]
-        axes = [f".{axis}" for axis in readings["axis"].values] if "axis" in readings.dims else [""]
-        labels = [name + axis for name in names for axis in axes]
-        faults = _faults(values, _groups(names, axes, dimension, structure))
+        each = len(columns) // len(names)
+        faults = _faults(values, _groups(names, each, dimension, structure), stuck(values, unit))
         step = float(np.median(np.diff(test[clock].to_numpy())))
         for fault in faults:
             value = float(values[np.argmax(fault.rows), fault.column]) + 0.0
             words = {
-                "constant": f"{value:.4g} {unit} throughout while others change",
+                "constant": f"{value:.4g} {unit} throughout",
                 "frozen": f"no change for {fault.rows.sum() * step:.3g} s while others change",
                 "clipped": f"readings that end at {abs(value):.4g} {unit}",
                 "doubled": "the same readings twice",
             }[fault.kind]
-            sensor = names[fault.column // len(axes)]
-            faulty.append(Faulty(sensor, labels[fault.column], fault.kind, value, fault.p, words))
+            sensor = names[fault.column // each]
+            faulty.append(Faulty(sensor, columns[fault.column], fault.kind, value, fault.p, words))
         for fault in faults:
             values[fault.rows, fault.column] = np.nan
-        test = test.assign({variable: readings.copy(data=values.reshape(readings.shape))})
+        test = test.assign({readings.name: readings.copy(data=values.reshape(readings.shape))})
         read = np.isfinite(values).reshape(len(values), len(names), -1).any(axis=(0, 2))
         test = test.isel({dimension: np.flatnonzero(read)})
     return test.assign_attrs(faulty=tuple(faulty))
@@ -108,16 +125,19 @@ def faulty_lines(test):
     ]
 
 
-def _groups(names, axes, dimension, structure):
+def _groups(names, each, dimension, structure):
     """Body and axis of every column; a transducer has no other like it."""
     if dimension == "marker":
-        return [(body, axis) for body in marker_bodies(structure, names) for axis in axes]
+        return [(body, axis) for body in marker_bodies(structure, names) for axis in range(each)]
     carriers = channel_carriers(structure)
     return [carriers.get(name, name) for name in names]
 
 
-def _faults(values, groups):
-    """List of `_Fault` of columns (n_times, n_columns), a column's ``constant`` without any other."""
+def _faults(values, groups, nothing):
+    """List of `_Fault` of columns (n_times, n_columns), a column's ``constant`` without any other.
+
+    ``nothing`` (n_columns,): whether each is `stuck`.
+    """
     known = np.isfinite(values[1:]) & np.isfinite(values[:-1])
     steps = np.diff(values, axis=0)
     changed = known & (steps != 0.0)
@@ -126,6 +146,9 @@ def _faults(values, groups):
     noisy = _is_noisy(steps[~hung][:, varying], changed[~hung][:, varying])
     faults, copies = [], {}
     for column, group in enumerate(groups):
+        if nothing[column]:
+            faults.append(_Fault("constant", column, np.isfinite(values[:, column]), 0.0))
+            continue
         others = np.array([other == group for other in groups]) & varying
         others[column] = False
         if not others.any():

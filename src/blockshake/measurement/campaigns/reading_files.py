@@ -1,18 +1,16 @@
 """Readings of a test as its file has them: netCDF, or a pair of CSV tables."""
 
-import csv
 import io
 
 import numpy as np
 import xarray as xr
 
 from blockshake.errors import InputError
-from blockshake.files import read_text
 from blockshake.geometry.schema import AXES
 from blockshake.interrupts import delayed_interrupts
 from blockshake.paths import file_below
 from blockshake.tables.damaged_hdf5 import DAMAGE, has_endless_heap
-from blockshake.tables.numbers import missing_code, plain_number
+from blockshake.tables.table_file import TableLayout, read_table
 
 _METRES = ("m", "metre", "metres", "meter", "meters")
 _ACCELERATION = ("m s-2", "m s^-2", "m s**-2", "m/s2", "m/s^2", "m/s**2", "m.s-2", "meters/second^2")
@@ -144,34 +142,8 @@ def read_tables(path, transducers):
 
 def read_columns(path):
     """Times and columns of a CSV; empty cells are NaN."""
-    reader = csv.reader(io.StringIO(read_text(path).removeprefix("\ufeff")), strict=True)
-    try:
-        rows = [(reader.line_num, row) for row in reader if any(row)]
-    except csv.Error as error:
-        raise InputError(path, f"line {reader.line_num}", f"expected cells between commas; {error}") from None
-    names = [name.strip() for name in rows[0][1]] if rows else []
-    if "time_s" not in names or len(names) < 2 or len(rows) < 2 or len(set(names)) < len(names):
+    table = read_table(path, TableLayout())
+    if "time_s" not in table.names or len(table.names) < 2 or len(set(table.names)) < len(table.names):
         wrong = "expected a header with time_s, other columns and every name once, and rows below it"
         raise InputError(path, "time_s", wrong)
-    values = np.empty((len(rows) - 1, len(names)))
-    for row_number, (line, row) in enumerate(rows[1:]):
-        if len(row) != len(names):
-            raise InputError(path, f"line {line}", f"expected {len(names)} cells, not {len(row)}")
-        for column, cell in enumerate(row):
-            values[row_number, column] = _number(cell.strip(), path, f"line {line}, {names[column]}")
-    for name, column in zip(names, values.T, strict=True):
-        coded = None if name == "time_s" else missing_code(column)
-        if coded is not None:
-            wrong = (
-                f"expected a reading; {column[coded]:g} looks like a code for none, which an empty cell says"
-            )
-            raise InputError(path, f"line {rows[coded + 1][0]}, {name}", wrong)
-    columns = dict(zip(names, values.T, strict=True))
-    return columns.pop("time_s"), columns
-
-
-def _number(cell, path, key):
-    number = "nan" if cell.lower() in ("", "nan") else plain_number(cell)
-    if number is None:
-        raise InputError(path, key, f"expected a number or nothing, not '{cell}'")
-    return float(number)
+    return table.times("time_s"), {name: table.column(name) for name in table.names if name != "time_s"}

@@ -7,7 +7,7 @@ import numpy as np
 from blockshake.errors import InputError
 from blockshake.geometry.schema import AXES
 from blockshake.measurement.campaigns.clocks import from_first_reading, missing_rows
-from blockshake.measurement.campaigns.faulty_readings import without_faulty
+from blockshake.measurement.campaigns.faulty_readings import faulty_lines, instruments, stuck, without_faulty
 from blockshake.measurement.campaigns.reading_files import SURVEY, read_netcdf, read_tables, read_variables
 from blockshake.measurement.campaigns.starting_places import standing, with_starting_places
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
@@ -25,9 +25,6 @@ _FIRST = 5
 _START_LIMIT = 0.01  # m; far beyond noise, far less than a marker's distance from the origin
 _START_NOISE = 5.0  # times the channel's own noise
 _OVERLAP = 0.5  # of the shorter record, that both clocks must share
-_SENSORS = {
-    "marker_displacement": "marker", "accelerometer": "channel", "transducer_displacement": "transducer",
-}  # fmt: skip
 # by dimension: what its names are names of, in singular and plural, and those of a structure
 _NAMES = {
     "marker": ("marker", "markers", lambda structure: [marker.name for marker in structure.file.markers]),
@@ -105,7 +102,7 @@ def check_times(time, path, name):
     steps = np.diff(time)
     if not (steps > 0.0).all():
         row = int(np.argmin(steps > 0.0))
-        wrong = f"expected times that increase; {time[row + 1]:g} s follows {time[row]:g} s"
+        wrong = f"expected times that increase; {time[row + 1]:.13g} s follows {time[row]:.13g} s"
         raise InputError(path, name, wrong)
     rate = 1.0 / np.median(steps)
     if not _RATES[0] <= rate <= _RATES[1]:
@@ -113,7 +110,7 @@ def check_times(time, path, name):
         raise InputError(path, name, wrong)
     if missing_rows(time).sum() > len(time):
         row = int(steps.argmax())
-        lost = f"more rows are missing than there are, {steps[row]:.4g} s after {time[row]:g} s"
+        lost = f"more rows are missing than there are, {steps[row]:.4g} s after {time[row]:.13g} s"
         raise InputError(path, name, f"expected one record; {lost}")
 
 
@@ -131,9 +128,8 @@ def _check_names(test, structure, path):
         read = [str(name) for name in test[dimension].values] if dimension in test.coords else []
         for name in read:
             if name not in known:
-                raise InputError(
-                    path, name, f"expected {plural} of the structure: {', '.join(known) or 'none'}"
-                )
+                wrong = f"expected {plural} of the structure: {', '.join(known) or 'none'}"
+                raise InputError(path, name, wrong)
             if read.count(name) > 1:
                 raise InputError(path, name, f"expected every {singular} once")
 
@@ -144,13 +140,11 @@ def _check_driven(test, structure, path):
     wanted = [marker.name for marker in structure.file.markers if marker.body in driven]
     read = [name for name in map(str, test["marker"].values) if name in wanted]
     if not read:
-        raise InputError(
-            path, "marker", f"expected a marker of the driven body, which is the input: {' or '.join(wanted)}"
-        )
+        wrong = f"expected a marker of the driven body, which is the input: {' or '.join(wanted)}"
+        raise InputError(path, "marker", "; ".join([wrong, *faulty_lines(test)]))
     if not test["marker_displacement"].sel(marker=read, axis="x").notnull().any():
-        raise InputError(
-            path, f"{read[0]}.x", "expected readings of the driven body along x, the direction of shaking"
-        )
+        wrong = "expected readings of the driven body along x, the direction of shaking"
+        raise InputError(path, f"{read[0]}.x", wrong)
 
 
 def _check_clocks(test, path):
@@ -161,7 +155,7 @@ def _check_clocks(test, path):
     shared = min(end for _, end in clocks) - max(begin for begin, _ in clocks)
     if shared < _OVERLAP * min(end - begin for begin, end in clocks):
         (begin, end), (begin_acc, end_acc) = clocks
-        wrong = f"expected the clock of time, {begin:g} to {end:g} s, not {begin_acc:g} to {end_acc:g} s"
+        wrong = f"expected the clock of time, {begin:.13g} to {end:.13g} s, not {begin_acc:.13g} to {end_acc:.13g} s"
         raise InputError(path, "time_acc", wrong)
 
 
@@ -175,40 +169,35 @@ def _check_readings(test, path):
             if coded is not None:
                 wrong = f"expected readings, and NaN in a gap; {column[coded]:g} looks like a code for none"
                 raise InputError(path, name, wrong)
-    for variable, dimension in _SENSORS.items():
-        for name in test[dimension].values if variable in test else ():
-            if test[variable].sel({dimension: name}).isnull().all():
+    for readings, *_ in instruments(test):
+        for name in readings[readings.dims[1]].values:
+            if readings.sel({readings.dims[1]: name}).isnull().all():
                 raise InputError(path, str(name), "expected readings; all are missing")
-    for variable in ("marker_displacement", "transducer_displacement"):
-        farthest = float(np.abs(test[variable]).max()) if variable in test else 0.0
-        if farthest > FARTHEST:
-            wrong = f"expected metres; a displacement of {farthest:g} looks like millimetres"
-            raise InputError(path, variable, wrong)
 
 
 def _check_start(test, path):
-    """Displacements count from the first reading; channels whose first readings are lost are left out."""
-    time, readings = test["time"].to_numpy(), test["marker_displacement"].to_numpy()
-    columns = [
-        (f"{name}.{AXES[axis]}", time, readings[:, marker, axis])
-        for marker, name in enumerate(test["marker"].values)
-        for axis in range(3)
-    ]
-    if "transducer_displacement" in test:
-        time, readings = test["time_acc"].to_numpy(), test["transducer_displacement"]
-        columns += [
-            (str(name), time, readings.sel(transducer=name).to_numpy()) for name in test["transducer"].values
-        ]
-    for name, time, channel in columns:
-        channel = channel[(time <= time[0] + _START) & np.isfinite(channel)]
-        if len(channel) < 2:
+    """Displacements are in metres and count from the first reading.
+
+    Columns that are `stuck` are left out, and those whose first readings are lost.
+    """
+    for readings, unit, columns, values in instruments(test):
+        if unit != "m":
             continue
-        start = float(np.median(channel[:_FIRST]))
-        noise = np.sqrt(np.mean(np.diff(channel) ** 2) / 2.0)  # large where the unit is another
-        if abs(start) > max(_START_LIMIT, _START_NOISE * noise):
-            raise InputError(
-                path, name, f"expected displacements since the first reading; it starts at {start:.3g} m"
-            )
+        values = np.where(stuck(values), np.nan, values)
+        farthest = float(np.nanmax(np.abs(values), initial=0.0))
+        if farthest > FARTHEST:
+            wrong = f"expected metres; a displacement of {farthest:g} looks like millimetres"
+            raise InputError(path, readings.name, wrong)
+        time = readings[readings.dims[0]].to_numpy()
+        for name, column in zip(columns, values.T, strict=True):
+            channel = column[(time <= time[0] + _START) & np.isfinite(column)]
+            if len(channel) < 2:
+                continue
+            start = float(np.median(channel[:_FIRST]))
+            noise = np.sqrt(np.mean(np.diff(channel) ** 2) / 2.0)  # large where the unit is another
+            if abs(start) > max(_START_LIMIT, _START_NOISE * noise):
+                wrong = f"expected displacements since the first reading; it starts at {start:.3g} m"
+                raise InputError(path, name, wrong)
 
 
 def check_initial_places(test, structure, path):

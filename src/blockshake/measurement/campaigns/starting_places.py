@@ -63,9 +63,8 @@ def with_starting_places(test, structure, path):
     try:
         touching = standing(structure, test).touching
     except InputError as error:
-        raise InputError(
-            path, "initial_offset", f"expected blocks that bear on each other; {error}"
-        ) from None
+        wrong = f"expected blocks that bear on each other; {error}"
+        raise InputError(path, "initial_offset", wrong) from None
     for pair in np.argwhere(np.triu(touching != structure.touching))[:1]:
         lower, upper = (structure.body_names[body] for body in pair)
         wrong = f"expected the joints of the structure file; {lower} and {upper} touch in one of both alone"
@@ -126,9 +125,8 @@ def _surveyed(test, structure, path):
     if off[body, axis] > _UPRIGHT:
         key = f"{'initial_rotation' if axis else 'initial_offset'}.{structure.body_names[body]}"
         size = f"{1e3 * off[body, axis]:.3g} {('mm along z', 'mrad about x', 'mrad about y')[axis]}"
-        raise InputError(
-            path, key, f"expected a block as high and upright as in the structure file, not {size} off"
-        )
+        wrong = f"expected a block as high and upright as in the structure file, not {size} off"
+        raise InputError(path, key, wrong)
     return read[:, [0, 1, 5]]
 
 

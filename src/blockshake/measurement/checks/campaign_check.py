@@ -66,14 +66,12 @@ def campaign_lines(folder):
     ]
     if structure.file.displacement_transducers:
         lines[0] += f", of displacement transducers {campaign.sensors.transducer_noise:g} m"
-    remarks, read = (
-        [f"  {remark}" for remark in point_remarks(structure)],
-        {"marker": set(), "transducer": set()},
-    )
+    remarks, read, named = [f"  {remark}" for remark in point_remarks(structure)], {}, set()
     for entry in campaign.tests.values():
         test = load_test(campaign, entry.name)
-        for kind, names in read.items():
-            names.update(test[kind].values if kind in test.coords else ())
+        kinds = [kind for kind in ("marker", "channel", "transducer") if kind in test.coords]
+        read[entry.name] = [str(name) for kind in kinds for name in test[kind].values]
+        named |= {(entry.name, fault.sensor) for fault in test.attrs["faulty"]}
         described = _Described(campaign, structure, entry, test)
         lines.append(f"  {entry.name} ({entry.role}): {', '.join(described.facts)}")
         remarks += [f"  {entry.name}: {remark}" for remark in described.remarks]
@@ -82,10 +80,12 @@ def campaign_lines(folder):
             remarks.append(
                 f"  {entry.name}: {fall.body} falls at {fall.time:.2f} s; a diagnosis reads the test until then"
             )
-    markers = [marker.name for marker in structure.file.markers]
-    unread = [f"marker {name}" for name in markers if name not in read["marker"]]
-    transducers = [name for name in transducer_names(structure) if name not in read["transducer"]]
-    unread += [f"displacement transducer {name}" for name in transducers]
+    seen = dict.fromkeys(name for names in read.values() for name in names)
+    for test, names in read.items():
+        lost = [name for name in seen if name not in names and (test, name) not in named]
+        remarks += [f"  {test}: no readings of {', '.join(lost)}, which other tests have"] if lost else []
+    unread = [f"marker {marker.name}" for marker in structure.file.markers if marker.name not in seen]
+    unread += [f"displacement transducer {name}" for name in transducer_names(structure) if name not in seen]
     remarks += [f"  {name} of the structure is in no test" for name in unread]
     return lines + (["remarks:", *remarks] if remarks else ["no inconsistency found"])
 

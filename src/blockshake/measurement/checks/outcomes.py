@@ -20,9 +20,8 @@ def standing_body(structure):
     free = np.flatnonzero(~structure.driven)
     if len(free) != 1 or not structure.touching[free[0]].any():
         found = f"found {len(free)}" if len(free) != 1 else "it touches nothing at the start"
-        raise InputError(
-            structure.source, "bodies", f"expected one body that stands on a driven one, of outcomes; {found}"
-        )
+        wrong = f"expected one body that stands on a driven one, of outcomes; {found}"
+        raise InputError(structure.source, "bodies", wrong)
     return int(free[0])
 
 
@@ -37,9 +36,8 @@ def outcome_lines(campaign):
     opened = campaign.open.values()
     standing_body(load_structure(campaign.structure))
     if not opened:
-        raise InputError(
-            campaign.folder / "campaign.yaml", "tests", "expected a test with the role fit or select"
-        )
+        wrong = "expected a test with the role fit or select"
+        raise InputError(campaign.folder / "campaign.yaml", "tests", wrong)
     fell = sum(test.outcome == "fell" for test in opened)
     lines = [
         f"campaign {campaign.name} on {campaign.structure}: {len(campaign.tests)} tests of which the outcome alone is "
@@ -48,9 +46,8 @@ def outcome_lines(campaign):
     for name, test in campaign.tests.items():
         if commanded_motion(campaign, test) is None:
             path = campaign.folder / "campaign.yaml"
-            raise InputError(
-                path, f"tests.{name}.motion", f"expected a file in {campaign.folder} or a shipped name"
-            )
+            wrong = f"expected a file in {campaign.folder} or a shipped name"
+            raise InputError(path, f"tests.{name}.motion", wrong)
     by_motion, remarks = defaultdict(list), []
     for test in opened:
         by_motion[test.motion].append(test)

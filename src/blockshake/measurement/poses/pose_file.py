@@ -167,8 +167,5 @@ def _check_turning(time, rotation, path, name):
     turned = Rotation.from_matrix(rotation[read])
     rate = np.linalg.norm((turned[1:] * turned[:-1].inv()).as_rotvec(), axis=1) / np.diff(time[read])
     if np.median(rate) > _FASTEST:
-        raise InputError(
-            path,
-            name,
-            f"expected rotations in radians, not a body that turns with {np.median(rate):.3g} rad/s",
-        )
+        wrong = f"expected rotations in radians, not a body that turns with {np.median(rate):.3g} rad/s"
+        raise InputError(path, name, wrong)

@@ -211,6 +211,5 @@ def check_instruments(instruments, structure, channels):
     for key, known in (*((key, markers) for key in of_markers), ("channel_gain", channels)):
         for name in getattr(instruments, key):
             if name not in known:
-                raise InputError(
-                    "instruments", f"{key}.{name}", f"expected one of {', '.join(known) or 'no channel'}"
-                )
+                wrong = f"expected one of {', '.join(known) or 'no channel'}"
+                raise InputError("instruments", f"{key}.{name}", wrong)

@@ -6,7 +6,7 @@ import pandas as pd
 from blockshake.errors import InputError
 from blockshake.files import write_text
 from blockshake.tables.numbers import plain_number
-from blockshake.tables.table_file import csv_rows
+from blockshake.tables.table_file import csv_records
 
 
 def write_design(path, values):
@@ -34,20 +34,14 @@ def load_design(path):
     InputError
         Missing file, no rows, a name twice, a row of another length, or an entry that is no finite number.
     """
-    rows = csv_rows(path)
-    if len(rows) < 2:
+    rows = csv_records(path)
+    if not rows:
         raise InputError(path, "", "expected a header of parameter names and one row a sample")
-    names = rows[0]
-    for name in names:
-        if not name or names.count(name) > 1:
-            raise InputError(path, name, "expected every column to have a name of its own")
-    values = np.empty((len(rows) - 1, len(names)))
-    for sample, row in enumerate(rows[1:]):
-        if len(row) != len(names):
-            raise InputError(path, f"sample {sample}", f"expected {len(names)} values, not {len(row)}")
-        for column, cell in enumerate(row):
-            values[sample, column] = _finite(cell, path, f"sample {sample}, {names[column]}")
-    return pd.DataFrame(values, columns=names, index=pd.RangeIndex(len(values), name="sample"))
+    values = [
+        {name: _finite(cell, path, f"row {number}, {name}") for name, cell in row.items()}
+        for number, row in enumerate(rows, start=1)
+    ]
+    return pd.DataFrame(values, index=pd.RangeIndex(len(rows), name="sample"))
 
 
 def _finite(cell, path, key):
