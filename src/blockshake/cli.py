@@ -16,6 +16,10 @@ from blockshake.own_files.commands import add_baseline, add_data_commands
 from blockshake.simulation.models import MODELS
 
 NUMERICAL_FAILURE = 3
+_IN_A_FOLDER = (
+    "Works in results, reports and logs of the current folder{}, alone: a second study or diagnosis there says so and "
+    "ends, one in another folder runs beside it. What was stopped goes on where it was."
+)
 # of arguments that have another name
 _OPTIONS = {"parameters": "--set", "channels": "--column", "columns": "--column"}
 UNREAD = 141  # whoever reads the output has gone, as after `blockshake parameters | head -1`
@@ -97,8 +101,8 @@ def _parser():
     parser.add_argument("--version", action="version", version=f"blockshake {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND", parser_class=_Parser)
 
-    def add(name, run, words):
-        command = commands.add_parser(name, help=words)
+    def add(name, run, words, more=None):
+        command = commands.add_parser(name, help=words, description=more)
         command.set_defaults(run=run)
         return command
 
@@ -167,7 +171,10 @@ def _parser():
     )
 
     command = add(
-        "study", _study, "samples, envelopes and the report of a study; goes on where it was stopped"
+        "study",
+        _study,
+        "samples, envelopes and the report of a study; goes on where it was stopped",
+        _IN_A_FOLDER.format(" or of that of --output"),
     )
     command.add_argument("file", metavar="STUDY.yaml", help="`blockshake new study` writes one")
     command.add_argument(
@@ -180,6 +187,7 @@ def _parser():
         "diagnose",
         _diagnose,
         "what simulations of measured tests get wrong, the cause, and what naming it gains",
+        _IN_A_FOLDER.format(""),
     )
     command.add_argument("campaign", metavar="CAMPAIGN_DIR")
     command.add_argument("--output", required=True, metavar="DIR", help="of the verdict and the report")
