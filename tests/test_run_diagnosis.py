@@ -84,7 +84,7 @@ def test_a_diagnosis_beside_another_command_is_refused_and_touches_nothing(tmp_p
 
 
 def test_the_workflow_ends_with_the_diagnosis_and_works_in_its_folder(tmp_path, monkeypatch):
-    """A diagnosis that is killed leaves no workflow behind, which would hold the folder; another folder is no matter."""
+    """A diagnosis that is killed leaves no workflow behind, which would hold the folder; another folder is free."""
     given, folder, held = {}, tmp_path / "own", hold(tmp_path)
     folder.mkdir()
 

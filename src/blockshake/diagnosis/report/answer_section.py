@@ -3,7 +3,14 @@
 import numpy as np
 
 from blockshake.diagnosis.report.statement import changed, not_told, sensor_causes, statement
-from blockshake.diagnosis.wording import chance_words, estimate_words, listed, name_of, percent_words
+from blockshake.diagnosis.wording import (
+    NO_ERROR,
+    chance_words,
+    estimate_words,
+    listed,
+    name_of,
+    percent_words,
+)
 from blockshake.effects.registry import title_of
 from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import BLACK, BLUE, LIGHT_GREY, new_figure, svg_of
@@ -76,7 +83,10 @@ def _gain_fact(verdict):
         reasons = [one for one in verdict.caveats if "gain was measured" in one]
         return label, "not measured", (reasons or ["nothing acts that could explain any"])[0]
     words = "on forces, of the recalibrated model's error; size frozen before; 90 % interval"
-    return label, percent_words(gain.recalibrated), words
+    removed, of_nominal = map(percent_words, (gain.recalibrated, gain.nominal))
+    if removed == NO_ERROR:
+        words = f"the recalibrated model's forces are within their errors; of the nominal model's error: {of_nominal}"
+    return label, removed, words
 
 
 def _items(diagnosed):
