@@ -216,6 +216,9 @@ def test_tests_sensors_and_files_are_accounted_for(pages, found):
     assert "sealed: not read" in pages["none"][1]
     assert "214 hypotheses on" in text
     assert "Not checked against others" in text
+    assert "2 accelerometer channels" in text
+    assert "Accelerometer channels whose gain the markers of their bodies tell: block-1-acc-x." in text
+    assert "the markers do not show what they read or it is small: block-1-acc-z." in text
     assert "whose gain the markers of their bodies tell: wire-1." in text
     assert "these hardly moved apart: wire-2." in text
     assert "The rotation of block-4, which has one marker." in text
