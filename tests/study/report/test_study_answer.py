@@ -12,7 +12,7 @@ from blockshake.study.report.answer import answer
 from blockshake.study.report.case_outcomes import models_apart, most_telling, outcomes, shares_at_impacts
 from blockshake.study.report.content import load_content
 from blockshake.study.report.joints_table import joints_table
-from blockshake.study.report.open_questions import MOST, unknown
+from blockshake.study.report.open_questions import MOST, next_steps, unknown
 
 FIRST, FOURTH = "configuration-1", "configuration-4"
 
@@ -112,9 +112,7 @@ def test_what_is_left_is_told_of_a_block_at_rest_alone(content):
     case = content.cases[FIRST]
     assert np.isnan(outcomes(case)["ls-dem"].end)
     one = case.responses["ls-dem"]
-    envelope = one.envelope.copy(deep=True)
-    last = envelope["time"] >= float(envelope["time"][-1]) - 1.0
-    envelope["marker_displacement"] = envelope["marker_displacement"].where(~last, 0.01)
+    envelope = one.envelope.assign(still_moving=0.4 * (one.envelope["still_moving"] > 0.0))
     still = replace(case, responses={"ls-dem": replace(one, envelope=envelope)})
     residual = envelope["residual"].sel(frame="slab", quantile=0.5, marker="block-3-face")
     assert outcomes(still)["ls-dem"].end == abs(float(residual))
@@ -239,6 +237,22 @@ def test_next_steps_follow_the_results(content):
     assert 1.0 - 0.025 ** (1.0 / 72.0) < 0.05 < 1.0 - 0.025 ** (1.0 / 71.0)
     assert steps[2].startswith("Run 72 samples a model")
     assert len(steps) <= MOST
+
+
+def test_more_samples_of_a_case_whose_samples_do_not_differ_are_not_advised(content):
+    found = {name: outcomes(case) for name, case in content.cases.items()}
+    alike = {
+        name: {model: one._replace(least=one.most - 0.9e-4) for model, one in ended.items()}
+        for name, ended in found.items()
+    }
+    assert content.cases[FIRST].marker_noise == 1e-4
+    assert any(step.startswith("Run 72 samples") for step in next_steps(content, found))
+    # one sample by elastic NSCD says nothing of what others would do
+    assert "with the fewest, 1, below" in next(
+        one for one in next_steps(content, alike) if "72 samples" in one
+    )
+    del alike[FOURTH]["nscd-elastic"]
+    assert not any("72 samples" in step for step in next_steps(content, alike))
 
 
 def test_gaps_beyond_the_first_page_are_told_all_the_same(content):

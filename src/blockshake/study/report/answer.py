@@ -18,9 +18,9 @@ from blockshake.pages.wording import (
     share_words,
 )
 from blockshake.study.ensembles.coverage import is_likely
+from blockshake.study.ensembles.envelope import STILL
 from blockshake.study.report.answer_figure import plot_answer
 from blockshake.study.report.case_outcomes import (
-    STILL,
     models_apart,
     most_telling,
     outcomes,

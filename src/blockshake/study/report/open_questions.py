@@ -52,9 +52,15 @@ def next_steps(content, found):
             f"Let a block rock freely and measure the spin that an impact keeps: {near} keeps {impacts[1][0]:.2f} and "
             f"{far} {impacts[1][1]:.2f} at {impacts[0]}."
         )
-    stand = [one for ended in found.values() for one in ended.values() if not one.collapsed]
+    # samples that differ by less than a marker tells are one run, and more of them say no more
+    stand = [
+        one.counted
+        for name, ended in found.items()
+        for one in ended.values()
+        if not one.collapsed and (one.counted == 1 or one.most - one.least > cases[name].marker_noise)
+    ]
     enough = next(size for size in count(1) if share_interval(0, size)[1] <= _RARE)
-    fewest = min((one.counted for one in stand), default=enough)
+    fewest = min(stand, default=enough)
     if fewest < enough:
         steps.append(
             f"Run {enough} samples a model (key ensemble.size): without a collapse among them its probability is below "

@@ -1,11 +1,13 @@
 """Sections on the cases in figures, and on the inputs: structures, motions."""
 
+from itertools import product
+
 import numpy as np
 
 from blockshake.dynamics.load_motion import provenance
 from blockshake.pages.blocks import PAGE_WIDTH, Figure, Heading, Items, Section, Table, Text
 from blockshake.pages.drawing import svg_of
-from blockshake.pages.rows import face_markers
+from blockshake.pages.rows import top_markers
 from blockshake.pages.scene.structure_picture import plot_understood
 from blockshake.pages.wording import (
     CUBED,
@@ -75,12 +77,13 @@ def failures(content):
 
 
 def probability_table(content):
-    """Collapse, drift beyond the limit, peak and rotation of the top block, each with its 95 % interval."""
+    """Collapse, drift beyond the limit, peak and rotation of the top block of every leaf, with 95 % intervals."""
     needed = ", ".join(f"{100 * one:.0f} % needs {samples_needed(one)}" for one in _SHOWN)
     rows = []
     for case in content.cases.values():
-        body, marker = next(iter(face_markers(case.structure).items()))
-        for model, response in case.responses.items():
+        for (body, marker), (model, response) in product(
+            top_markers(case.structure).items(), case.responses.items()
+        ):
             one = response.envelope
             counted, failed, *_ = shortfall(one)
             top = one.sel(marker=marker, body=body)
@@ -95,7 +98,8 @@ def probability_table(content):
     shown = " and ".join(f"{100 * one:.0f} %" for one in _SHOWN)
     quantiles = [f"{100 * one:.0f} %" for one in _SHOWN]
     return Table(
-        "Top block, at its marker: probability of collapse, and of a displacement relative to the slab of more than "
+        "Top block of every leaf, at its marker: probability of collapse, and of a displacement relative to the slab "
+        "of more than "
         f"{number(1e3 * limit.attrs['largest_drift'])} mm, with Clopper-Pearson limits; quantiles {shown} of peak "
         "displacement [mm] and peak rotation [mrad] over the n samples that did not fail, with limits by order "
         f"statistics. {MISSING.capitalize()}: of a quantile for which n is too small to bear limits ({needed}). All "
