@@ -13,6 +13,7 @@ from blockshake import __version__
 from blockshake.errors import BAD_INPUT, INTERRUPTED, Argument, InputError
 from blockshake.files import check_output, parse_yaml, write_json
 from blockshake.own_files.commands import add_baseline, add_data_commands
+from blockshake.own_files.run_workflow import WorkflowError
 from blockshake.simulation.models import MODELS
 
 NUMERICAL_FAILURE = 3
@@ -76,6 +77,8 @@ def _run(arguments):
     except InputError as error:
         print(f"blockshake: {_with_option(error)}", file=sys.stderr)
         return BAD_INPUT
+    except WorkflowError as stopped:
+        return stopped.exit_code
     except KeyboardInterrupt as interrupt:
         print(f"blockshake: {str(interrupt) or 'interrupted'}", file=sys.stderr)
         return INTERRUPTED
@@ -373,28 +376,16 @@ def _generate_campaign(options):
 
 def _study(options):
     from blockshake.own_files.run_study import run_study
-    from blockshake.own_files.run_workflow import WorkflowError
 
-    try:
-        run_study(
-            options.file, options.output, options.cores, options.case, lambda line: print(line, flush=True)
-        )
-    except WorkflowError as stopped:
-        return stopped.exit_code
-    return 0
+    run_study(options.file, options.output, options.cores, options.case, lambda line: print(line, flush=True))
 
 
 def _diagnose(options):
-    from blockshake.own_files.run_workflow import WorkflowError
     from blockshake.run_diagnosis import diagnose
 
-    try:
-        verdict = diagnose(options.campaign, options.output, options.effort, options.cores)
-    except WorkflowError as stopped:
-        return stopped.exit_code
+    verdict = diagnose(options.campaign, options.output, options.effort, options.cores)
     named = f" ({verdict.decision}): {', '.join(verdict.causes)}" if verdict.causes else ""
     print(f"{verdict.word}{named}; {options.output}/report.html")
-    return 0
 
 
 def _plan_campaign(options):
@@ -411,14 +402,12 @@ def _plan_campaign(options):
     print()
     _print_table(addition_rows(additions))
     print(f"{options.output}/plan.html")
-    return 0
 
 
 def _extend_study(options):
     from blockshake.diagnosis.gain.extended_study import extend_study
 
     print("\n".join(extend_study(options.verdict, options.study, options.output)))
-    return 0
 
 
 def _check(options):

@@ -15,12 +15,9 @@ def face_markers(structure):
 
 def top_markers(structure):
     """Marker of the highest block that has one in every leaf of `find_leaves`: body to marker, as of `face_markers`."""
-    leaf_of = {
-        structure.body_names[body]: name for name, leaf in find_leaves(structure).items() for body in leaf
-    }
-    tops = {}
+    leaf_of, tops = {body: name for name, leaf in find_leaves(structure).items() for body in leaf}, {}
     for body, marker in face_markers(structure).items():
-        tops.setdefault(leaf_of[body], (body, marker))
+        tops.setdefault(leaf_of[structure.body_names.index(body)], (body, marker))
     return dict(tops.values())
 
 

@@ -4,7 +4,7 @@ from itertools import chain, combinations, product
 
 import numpy as np
 
-from blockshake.pages.blocks import Table
+from blockshake.pages.blocks import Table, Text
 from blockshake.pages.rows import face_markers, top_markers
 from blockshake.pages.wording import MISSING, given, limited, millimetres, model_label, number, sentence_case
 from blockshake.simulation.models import solver_of
@@ -21,8 +21,7 @@ _SWINGS = (
 
 
 def block_tables(case):
-    """Peak and residual of every block by every model, a table each."""
-    found = case.differences
+    """Peak and residual of every block by every model, a table each, or a sentence where all blocks still move."""
     at_end = f"mean over the last {given(RESIDUAL_WINDOW)} s of the window"
     limits = (
         f"In brackets limits of 95 % by order statistics, which fewer than {SURE_FROM} samples do not bear."
@@ -32,21 +31,20 @@ def block_tables(case):
         "residual": f"residual displacement ({at_end}) relative to the slab [mm], median over those of the n samples "
         f"that did not fall. {_SWINGS} {limits}",
     }
-    return [_block_table(case, found, name, f"{case.name}: {words}") for name, words in captions.items()]
+    return [_block_table(case, name, f"{case.name}: {words}") for name, words in captions.items()]
 
 
-def _block_table(case, found, name, caption):
-    rows = []
-    compared = case.measured is not None and name in case.measured
+def _block_table(case, name, caption):
+    rows, read = [], [] if case.measured is None else [sentence_case(case.curve_word)[:-1]]
     for body, marker in face_markers(case.structure).items():
-        known = compared and marker in case.measured["marker"].values
-        read = [_measured(case, name, marker) if known else MISSING] if compared else []
-        rows.append((body, *read, *(_shown(case, model, name, marker) for model in case.responses)))
-    labels = (
-        f"{model_label(model)} (n = {int(found['counted'].sel(model=model))})" for model in case.responses
-    )
-    word = f"{case.curve_word[0].upper()}{case.curve_word[1:]}"
-    header = ("Block", *([word] if compared else []), *labels)
+        known = bool(read) and marker in case.measured["marker"].values
+        cells = [_measured(case, name, marker) if known else MISSING] * len(read)
+        rows.append((body, *cells, *(_shown(case, model, name, marker) for model in case.responses)))
+    counted = case.differences["counted"]
+    labels = (f"{model_label(model)} (n = {int(counted.sel(model=model))})" for model in case.responses)
+    header = ("Block", *read, *labels)
+    if {cell for row in rows for cell in row[1:]} == {MOVING}:
+        return Text(f"{case.name} has no residual displacement: every block is {MOVING}. {_SWINGS}")
     return Table(caption, header, tuple(rows), "l" + "r" * (len(header) - 1))
 
 

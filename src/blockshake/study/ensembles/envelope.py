@@ -7,12 +7,7 @@ from blockshake.dynamics.system import FALLEN, FINISHED
 from blockshake.files import history
 from blockshake.geometry.reference_block import half_width
 from blockshake.simulation.run_histories import JOINT_FIGURES
-from blockshake.statistics.intervals import (
-    CONFIDENCE,
-    quantile_interval,
-    sample_quantiles,
-    share_interval,
-)
+from blockshake.statistics.intervals import CONFIDENCE, quantile_interval, sample_quantiles, share_interval
 from blockshake.study.ensembles.ensemble import POSES, describe, in_frames, join_batches
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)

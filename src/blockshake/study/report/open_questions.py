@@ -32,8 +32,8 @@ def next_steps(content, found):
     short = [name for name in found if (one := cases[name]).settings["duration"] < strong_until(content, one)]
     for name in short[:1]:
         steps.append(
-            f"Simulate {listed(short)} until the strong motion ends: {number(strong_until(content, cases[name]))} s "
-            "of the record (key duration)."
+            f"Simulate {_named(short, cases)} until the strong motion ends: "
+            f"{number(strong_until(content, cases[name]))} s of the record (key duration)."
         )
     moving = [
         name
@@ -42,7 +42,7 @@ def next_steps(content, found):
     ]
     if moving:
         steps.append(
-            f"Simulate {listed(moving)} for longer (key duration): blocks still move as the window ends."
+            f"Simulate {_named(moving, cases)} for longer (key duration): blocks still move as the window ends."
         )
     apart = [one for name in found for one in models_apart(cases[name], found[name])]
     impacts = shares_at_impacts(cases[max(apart).case], max(apart)[-2:]) if apart else None
@@ -89,10 +89,14 @@ def next_steps(content, found):
             f"({name}, {model_label(model)})."
         )
     if real := [case.name for case in cases.values() if case.measured is None or case.synthetic]:
-        steps.append(
-            f"Compare with a measured test (key measured): {listed(real)} {'has' if len(real) == 1 else 'have'} none."
-        )
+        has = "has" if len(real) == 1 else "have"
+        steps.append(f"Compare with a measured test (key measured): {_named(real, cases)} {has} none.")
     return steps
+
+
+def _named(names, cases):
+    """Some cases by name, or that it is all of many."""
+    return f"all {len(cases)} cases" if len(names) == len(cases) > MOST else listed(names)
 
 
 def strong_until(content, case):
@@ -111,11 +115,11 @@ def unknown(content):
         )
     ]
     if any(names for _, names in named):
-        words = "; ".join(f"{listed(names)} ({word})" for word, names in named if names)
+        words = "; ".join(f"{_named(names, cases)} ({word})" for word, names in named if names)
         sentences.append(f"Whether any model is right about real blocks: {words}.")
     if short := [case.name for case in cases if case.settings["duration"] < strong_until(content, case)]:
         sentences.append(
-            f"Whether blocks fall after the window, which ends in the strong motion: {listed(short)}."
+            f"Whether blocks fall after the window, which ends in the strong motion: {_named(short, cases)}."
         )
     falling = _by_model(cases, lambda one: _ended(one).falling)
     if falling:
@@ -124,7 +128,7 @@ def unknown(content):
         )
     calibrated = chain.from_iterable((content.study.get("calibration") or {"cases": {}})["cases"].values())
     if assumed := sorted({case.name for case in cases} - set(calibrated)):
-        sentences.append(f"The mean friction, which is assumed and not calibrated: {listed(assumed)}.")
+        sentences.append(f"The mean friction, which is assumed and not calibrated: {_named(assumed, cases)}.")
     bare = {
         case.structure.file.name: f"{int((~case.structure.driven).sum()) - marked} of {case.structure.file.name}"
         for case in cases
