@@ -98,7 +98,7 @@ def envelope(ensemble, largest_drift, displacement=None):
     failed = ensemble.sizes["sample"] - counted.sizes["sample"]
     probabilities = xr.DataArray(list(QUANTILES), dims="quantile", coords={"quantile": list(QUANTILES)})
     bounds = xr.DataArray(list(BOUNDS.values()), dims="bound", coords={"bound": list(BOUNDS)})
-    edges, quantiles, known, moving = _over_markers(
+    edges, quantiles, moving, known = _over_markers(
         counted, displacement or _held(ensemble), bounds, probabilities
     )
     result = xr.Dataset(
@@ -136,8 +136,8 @@ def _held(ensemble):
 
 
 def _over_markers(counted, displacement, bounds, probabilities):
-    """Bounds and quantiles of the displacement of every marker in both frames, which samples have a value when, and the
-    share of the samples that still move.
+    """Bounds and quantiles of the displacement of every marker in both frames, the share of the samples that still
+    move, and which samples have a value when.
 
     As many markers are read at a time as `_AT_HAND` allows, and one is worked on.
     """
@@ -157,8 +157,7 @@ def _over_markers(counted, displacement, bounds, probabilities):
             moving.append(moves.where(ended).mean("sample"))
             edges.append(over_samples(both, bounds))
             quantiles.append(over_samples(both, probabilities))
-    edges, quantiles, moving = (xr.concat(one, dim="marker") for one in (edges, quantiles, moving))
-    return edges, quantiles, known, moving
+    return *(xr.concat(one, dim="marker") for one in (edges, quantiles, moving)), known
 
 
 def _probabilities(counted, failed, largest_drift):

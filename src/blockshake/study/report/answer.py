@@ -92,7 +92,7 @@ def _verdict(found):
 
     def named(names, verb):
         if len(names) == 1:
-            return f"{names[0]} {verb}{'s' if verb != 'may collapse' else ''}"
+            return f"{names[0]} {verb}s"
         every = {2: "Both"}.get(len(names), f"All {len(names)}")
         return f"{f'{every} cases' if len(names) == len(found) else listed(names)} {verb}"
 
@@ -111,12 +111,12 @@ def _verdict(found):
         )
     for name in sides["may"]:
         by = [
-            f"{share_words(one.collapsed, one.counted)} by {model_label(model)}"
+            f"{share_words(one.collapsed, one.counted)} runs by {model_label(model)}"
             for model, one in found[name].items()
             if one.collapsed
         ]
-        others = "" if len(by) == len(found[name]) else ", and none by the others"
-        words.append(f"{named([name], 'may collapse')}: of the runs, {listed(by)} do{others}")
+        others = "" if len(by) == len(found[name]) else ", in none by the others"
+        words.append(f"{name} may collapse: in {listed(by)}{others}")
     if names := sides["fall"]:
         words.append(f"{named(names, 'collapse')}: so do all {runs(names)}")
     return ". ".join(words) + "."
@@ -234,7 +234,7 @@ def _lines(content, found):
 
 
 def _done(one, named):
-    """What the block of an `Outcome` does, with its name where it is ``named``."""
+    """Words on the block of an `Outcome`, with its name where it is ``named``."""
     sure = _limits(one)
     if one.collapsed:
         return f"{share_words(one.collapsed, one.counted)} samples collapse{_falling(one)}: {sure}"

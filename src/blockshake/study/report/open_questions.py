@@ -6,6 +6,7 @@ import numpy as np
 
 from blockshake.pages.rows import face_markers
 from blockshake.pages.wording import (
+    count_words,
     listed,
     model_label,
     number,
@@ -49,8 +50,8 @@ def next_steps(content, found):
     if impacts and abs(impacts[1][0] - impacts[1][1]) > ALIKE:
         near, far = map(model_label, max(apart)[-2:])
         steps.append(
-            f"Let a block rock freely and measure the spin that an impact keeps: {near} keeps {impacts[1][0]:.2f} and "
-            f"{far} {impacts[1][1]:.2f} at {impacts[0]}."
+            f"Let a block rock and measure the spin that impacts keep: {impacts[1][0]:.2f} by {near}, "
+            f"{impacts[1][1]:.2f} by {far} ({impacts[0]})."
         )
     # samples that differ by less than a marker tells are one run, and more of them say no more
     stand = [
@@ -62,9 +63,10 @@ def next_steps(content, found):
     enough = next(size for size in count(1) if share_interval(0, size)[1] <= _RARE)
     fewest = min(stand, default=enough)
     if fewest < enough:
+        now = f"now {100.0 * share_interval(0, fewest)[1]:.0f} % ({count_words(fewest, 'sample')})"
         steps.append(
-            f"Run {enough} samples a model (key ensemble.size): without a collapse among them its probability is below "
-            f"{100.0 * _RARE:.0f} %, with the fewest, {fewest}, below {100.0 * share_interval(0, fewest)[1]:.0f} %."
+            f"Run {enough} samples a model (key ensemble.size): if none collapses, the probability is below "
+            f"{100.0 * _RARE:.0f} %, {now}."
         )
     if not content.fragility and any(one.collapsed for ended in found.values() for one in ended.values()):
         steps.append("Let samples climb a ladder of intensities until each falls (key fragility).")
