@@ -107,7 +107,7 @@ def compared_curves(measured, ensemble, marker_noise, seed):
     """Displacement along x of a measured curve and of an ensemble at the same times, inertial frame [m].
 
     Arguments and errors are those of `coverage`; ``seed`` is of the noise. Returned: the measured curve (time,
-    marker), the samples that count, and their curves without and with a marker's noise, (n_samples, n_times, n_markers).
+    marker), the samples that count, and their curves without and with a marker's noise (n_samples, n_times, n_markers).
     """
     members = counted_samples(ensemble)
     read, curves = curves_along_x(measured, members)
