@@ -37,7 +37,9 @@ def test_every_block_has_its_numbers_by_every_model(content):
     assert f"{1e3 * float(few):.1f}" in peak.rows[0]
     assert "LS-DEM (" not in peak.caption
     # the made-up blocks and the virtual test sway until the end
-    assert moving.text.startswith(f"{FIRST}: the displacement that remains is not told, as every block is")
+    assert moving.text.startswith(
+        f"{FIRST}: what displacement remains is not told, for every block moves. Still"
+    )
 
 
 def test_a_residual_is_that_of_a_block_at_rest(content):

@@ -44,9 +44,7 @@ def _block_table(case, name, caption):
     labels = (f"{model_label(model)} (n = {int(counted.sel(model=model))})" for model in case.responses)
     header = ("Block", *read, *labels)
     if {cell for row in rows for cell in row[1:]} == {MOVING}:
-        return Text(
-            f"{case.name}: the displacement that remains is not told, as every block is {MOVING}. {_SWINGS}"
-        )
+        return Text(f"{case.name}: what displacement remains is not told, for every block moves. {_SWINGS}")
     return Table(caption, header, tuple(rows), "l" + "r" * (len(header) - 1))
 
 
