@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 
+import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
@@ -35,9 +36,11 @@ def test_simulate_writes_a_run_file(tmp_path, capsys):
     assert run.attrs["motion_synthetic"] == 1
     said = capsys.readouterr()
     assert said.err == ""
-    assert re.fullmatch(
-        r".*run\.nc: completed at 0\.1 s; largest drift \S+ mm, of block-\d at \S+ s; took \S+ s\n", said.out
-    )
+    words = r"largest drift (\S+) mm at \S+ s: the middle of block-\d from its place on the base, in any direction"
+    found = re.fullmatch(rf".*run\.nc: completed at 0\.1 s; {words}; took \S+ s\n", said.out)
+    drift = run["position"] - run["position"].sel(body="slab")
+    farthest = 1e3 * float(np.sqrt(((drift - drift.isel(time=0)) ** 2).sum("axis")).max())
+    assert found[1] == f"{farthest:.3g}"
 
 
 def test_sample_and_its_table(tmp_path):

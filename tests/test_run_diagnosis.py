@@ -72,7 +72,7 @@ def test_bad_arguments(capsys, arguments, message):
 
 
 def test_a_diagnosis_beside_another_command_is_refused_and_touches_nothing(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(run_diagnosis, "HOME", tmp_path)
+    monkeypatch.chdir(tmp_path)
     held = hold(tmp_path)
     before = sorted(tmp_path.rglob("*"))
     assert main(["diagnose", str(CAMPAIGN), "--output", str(tmp_path / "output")]) == 2
@@ -83,15 +83,16 @@ def test_a_diagnosis_beside_another_command_is_refused_and_touches_nothing(tmp_p
     assert sorted(tmp_path.rglob("*")) == before
 
 
-def test_the_workflow_ends_with_the_diagnosis(tmp_path, monkeypatch):
-    """A diagnosis that is killed leaves no workflow behind, which would hold the folder."""
-    given = {}
+def test_the_workflow_ends_with_the_diagnosis_and_works_in_its_folder(tmp_path, monkeypatch):
+    """A diagnosis that is killed leaves no workflow behind, which would hold the folder; another folder is free."""
+    given, folder, held = {}, tmp_path / "own", hold(tmp_path)
+    folder.mkdir()
 
     class Stopped:
         stdout = None
 
         def __init__(self, command, env, **_):
-            given.update(env)
+            given.update(env, folder=command[command.index("--directory") + 1])
 
         def __enter__(self):
             return self
@@ -102,12 +103,14 @@ def test_the_workflow_ends_with_the_diagnosis(tmp_path, monkeypatch):
         def wait(self):
             return 1
 
-    monkeypatch.setattr(run_diagnosis, "HOME", tmp_path)
+    monkeypatch.chdir(folder)
     monkeypatch.setattr(run_workflow.subprocess, "Popen", Stopped)
     with pytest.raises(run_workflow.WorkflowError, match="the workflow stopped"):
         run_diagnosis.diagnose(CAMPAIGN, tmp_path / "new" / "output")
+    os.close(held)
     assert not (tmp_path / "new").exists()
     assert this_command().items() <= given.items()
+    assert given["folder"] == str(folder)
 
 
 def test_functions_of_the_package_are_no_modules(tmp_path):

@@ -13,9 +13,14 @@ from blockshake import __version__
 from blockshake.errors import BAD_INPUT, INTERRUPTED, Argument, InputError
 from blockshake.files import check_output, parse_yaml, write_json
 from blockshake.own_files.commands import add_baseline, add_data_commands
+from blockshake.own_files.run_workflow import WorkflowError
 from blockshake.simulation.models import MODELS
 
 NUMERICAL_FAILURE = 3
+_IN_A_FOLDER = (
+    "Works in results, reports and logs of the current folder{}, alone: a second study or diagnosis there says so and "
+    "ends, one in another folder runs beside it. What was stopped goes on where it was."
+)
 # of arguments that have another name
 _OPTIONS = {"parameters": "--set", "channels": "--column", "columns": "--column", "options": "options"}
 UNREAD = 141  # whoever reads the output has gone, as after `blockshake parameters | head -1`
@@ -72,6 +77,8 @@ def _run(arguments):
     except InputError as error:
         print(f"blockshake: {_with_option(error)}", file=sys.stderr)
         return BAD_INPUT
+    except WorkflowError as stopped:
+        return stopped.exit_code
     except KeyboardInterrupt as interrupt:
         print(f"blockshake: {str(interrupt) or 'interrupted'}", file=sys.stderr)
         return INTERRUPTED
@@ -105,8 +112,8 @@ def _parser():
     parser.add_argument("--version", action="version", version=f"blockshake {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND", parser_class=_Parser)
 
-    def add(name, run, words):
-        command = commands.add_parser(name, help=words)
+    def add(name, run, words, more=None):
+        command = commands.add_parser(name, help=words, description=more)
         command.set_defaults(run=run)
         return command
 
@@ -175,7 +182,10 @@ def _parser():
     )
 
     command = add(
-        "study", _study, "samples, envelopes and the report of a study; goes on where it was stopped"
+        "study",
+        _study,
+        "samples, envelopes and the report of a study; goes on where it was stopped",
+        _IN_A_FOLDER.format(" or of that of --output"),
     )
     command.add_argument("file", metavar="STUDY.yaml", help="`blockshake new study` writes one")
     command.add_argument(
@@ -188,6 +198,7 @@ def _parser():
         "diagnose",
         _diagnose,
         "what simulations of measured tests get wrong, the cause, and what naming it gains",
+        _IN_A_FOLDER.format(""),
     )
     command.add_argument("campaign", metavar="CAMPAIGN_DIR")
     command.add_argument("--output", required=True, metavar="DIR", help="of the verdict and the report")
@@ -373,28 +384,16 @@ def _generate_campaign(options):
 
 def _study(options):
     from blockshake.own_files.run_study import run_study
-    from blockshake.own_files.run_workflow import WorkflowError
 
-    try:
-        run_study(
-            options.file, options.output, options.cores, options.case, lambda line: print(line, flush=True)
-        )
-    except WorkflowError as stopped:
-        return stopped.exit_code
-    return 0
+    run_study(options.file, options.output, options.cores, options.case, lambda line: print(line, flush=True))
 
 
 def _diagnose(options):
-    from blockshake.own_files.run_workflow import WorkflowError
     from blockshake.run_diagnosis import diagnose
 
-    try:
-        verdict = diagnose(options.campaign, options.output, options.effort, options.cores)
-    except WorkflowError as stopped:
-        return stopped.exit_code
+    verdict = diagnose(options.campaign, options.output, options.effort, options.cores)
     named = f" ({verdict.decision}): {', '.join(verdict.causes)}" if verdict.causes else ""
     print(f"{verdict.word}{named}; {options.output}/report.html")
-    return 0
 
 
 def _plan_campaign(options):
@@ -411,14 +410,12 @@ def _plan_campaign(options):
     print()
     _print_table(addition_rows(additions))
     print(f"{options.output}/plan.html")
-    return 0
 
 
 def _extend_study(options):
     from blockshake.diagnosis.gain.extended_study import extend_study
 
     print("\n".join(extend_study(options.verdict, options.study, options.output)))
-    return 0
 
 
 def _check(options):

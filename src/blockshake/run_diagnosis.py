@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from blockshake.files import HOME, PACKAGE, AnyPath, check_output
+from blockshake.files import HOME, AnyPath, check_output
 from blockshake.own_files.run_workflow import cores_of, run_workflow, workflow_command
 from blockshake.working_folder import hold
 
@@ -24,9 +24,9 @@ def diagnose(
 ) -> "Verdict":
     """Show what simulations of measured tests get wrong, name the cause, extend the model and measure the gain.
 
-    Simulates by the workflow's rules, in ``results`` of the checkout or, of an installed package, of the current
-    folder: a run that was stopped goes on where it was, and a second campaign of the same structure and motions finds
-    their ensembles there.
+    Simulates by the workflow's rules, in ``results`` of the current folder: a run that was stopped goes on where it
+    was, and a second campaign of the same structure and motions finds their ensembles there. One study or diagnosis at
+    a time works in a folder.
 
     Parameters
     ----------
@@ -46,8 +46,8 @@ def diagnose(
     Raises
     ------
     InputError
-        A campaign that cannot be diagnosed, a number of cores below 1, or another command works in the folder of the
-        results.
+        A campaign that cannot be diagnosed, a number of cores below 1, or another command works in the current
+        folder.
     WorkflowError
         A job failed: the workflow's last lines are the reason, the job and the path of its log.
     """
@@ -56,7 +56,7 @@ def diagnose(
 
     cores = cores_of("diagnose", cores)
     plan = plan_diagnosis(campaign, effort)
-    work = working_place()
+    work = Path.cwd()
     os.close(hold(work))  # the workflow holds it again
     check_output(Path(output) / "verdict.json")
     run_workflow(diagnosis_command(campaign, effort, cores))
@@ -74,11 +74,6 @@ def diagnose(
     return verdict
 
 
-def working_place():
-    """Folder of the results: the checkout or, of an installed package, the current one."""
-    return Path.cwd() if HOME.is_relative_to(PACKAGE) else HOME
-
-
 def diagnosis_command(campaign, effort, cores):
     """Command that starts the workflow of a campaign's diagnosis, as a list of its words.
 
@@ -86,4 +81,4 @@ def diagnosis_command(campaign, effort, cores):
     """
     folders = json.dumps([str(Path(campaign).resolve())], ensure_ascii=False)
     settings = ("diagnose", "--config", f"campaigns={folders}", f"effort={effort}")
-    return workflow_command(cores, working_place(), HOME / "config" / "diagnosis.yaml", *settings)
+    return workflow_command(cores, Path.cwd(), HOME / "config" / "diagnosis.yaml", *settings)

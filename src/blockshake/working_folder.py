@@ -33,7 +33,7 @@ def hold(folder):
     InputError
         Another command works in the folder, or what a workflow writes to cannot be written to.
     """
-    for name in _WRITTEN:
+    for name in ("", *_WRITTEN):
         path = Path(folder, name)
         if path.exists() and not os.access(path, os.W_OK):
             raise InputError(path.resolve(), "", "expected a folder to write to; permission denied")
@@ -44,7 +44,7 @@ def hold(folder):
         fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         os.close(held)
-        wrong = "expected a folder in which no other study or diagnosis runs; wait for its end, then type this again"
+        wrong = "expected a folder in which no other study or diagnosis runs; wait for its end, or use another folder"
         raise InputError(Path(folder).resolve(), "", wrong) from None
     os.ftruncate(held, 0)
     os.write(held, this_command()[COMMAND].encode())

@@ -1,7 +1,7 @@
 import pytest
 
 from blockshake.geometry.structure import load_structure
-from blockshake.pages.rows import face_markers
+from blockshake.pages.rows import face_markers, top_markers
 
 
 @pytest.mark.parametrize("name", ["configuration-1", "configuration-2", "configuration-3", "configuration-4"])
@@ -29,3 +29,15 @@ def test_structure_without_face_markers_takes_the_first_of_each_body(make_struct
         ],
     )  # fmt: skip
     assert list(face_markers(structure).items()) == [("high", "c"), ("low", "a")]
+
+
+def test_every_leaf_has_its_top_block(make_structure):
+    bodies = [
+        {"name": f"wall-{leaf}-{number}", "shape": "cube", "position": [x, 0, number - 0.5]}
+        for leaf, x in (("a", 0.0), ("b", 1.5))
+        for number in (1, 2)
+    ]
+    markers = [{"name": f"{one['name']}-face", "body": one["name"], "position": [0, 0, 0]} for one in bodies]
+    markers = [one for one in markers if one["body"] != "wall-b-2"]
+    structure = make_structure(bodies, markers=markers)
+    assert top_markers(structure) == {"wall-a-2": "wall-a-2-face", "wall-b-1": "wall-b-1-face"}

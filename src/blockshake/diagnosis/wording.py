@@ -9,6 +9,7 @@ from blockshake.effects.registry import EFFECTS, title_of
 from blockshake.pages.units import Printed, printed
 from blockshake.pages.wording import listed, number
 
+NO_ERROR = "no error to remove"
 _MANY = 1e6  # from which on odds are told in words
 _ALONG_X = ("force", "impulse", "offset")
 _HIGH = 0.25  # of a body's height above its middle, from which on a force acts near the top
@@ -135,9 +136,9 @@ def chance_words(p):
 
 
 def percent_words(contrast):
-    """A gain with its interval in percent: ``71 % (62 to 80 %)``; from -1 to 1 where nothing is there to gain."""
+    """A gain with its interval in percent: ``71 % (62 to 80 %)``; from -1 to 1 where the rival is within its errors."""
     if contrast.lower <= -1.0 and contrast.upper >= 1.0:
-        return "nothing to gain"
+        return NO_ERROR
     return (
         f"{100.0 * contrast.estimate:.0f} % ({100.0 * contrast.lower:.0f} to {100.0 * contrast.upper:.0f} %)"
     )

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from blockshake.measurement.motion.joints import find_leaves
 from blockshake.measurement.sensors.markers import block_markers
 
 
@@ -10,6 +11,14 @@ def face_markers(structure):
     chosen = block_markers(structure)
     height = dict(zip(structure.body_names, structure.position[:, 2], strict=True))
     return dict(sorted(chosen.items(), key=lambda item: -round(height[item[0]], 3)))
+
+
+def top_markers(structure):
+    """Marker of the highest block that has one in every leaf of `find_leaves`: body to marker, as of `face_markers`."""
+    leaf_of, tops = {body: name for name, leaf in find_leaves(structure).items() for body in leaf}, {}
+    for body, marker in face_markers(structure).items():
+        tops.setdefault(leaf_of[structure.body_names.index(body)], (body, marker))
+    return dict(tops.values())
 
 
 def bodies_by_height(structure, bodies, most=5):

@@ -46,7 +46,8 @@ class Parity:
     clock : xarray.Dataset
         ``lag(test)`` of the optical clock, with ``lag_error(test)`` [s].
     channels : xarray.Dataset
-        ``gain(channel)``, reading over truth less 1, with ``gain_error(channel)`` [1].
+        ``gain(channel)`` of every channel, reading over truth less 1, with ``gain_error(channel)`` [1]; NaN where the
+        markers do not tell it.
     transducers : xarray.Dataset
         ``gain(transducer)`` of displacement transducers, with ``gain_error(transducer)`` [1]; NaN where markers do not
         see both ends, or the bodies hardly moved apart.
@@ -199,13 +200,15 @@ def check_parity(tests, structure, sensors, level=LEVEL):
     }
     findings += [finding for check in transducers.values() for finding in check.findings]
     markers = {str(name): (np.nan, np.nan) for name in next(iter(tests.values()))["marker"].values}
+    read = (test["channel"].values for test in tests.values() if "channel" in test)
+    channels = {str(name): (np.nan, np.nan) for names in read for name in names}
     for name, check in checks.items():
         markers |= zip(bodies[name].markers, zip(check.noise, check.misfit, strict=True), strict=True)
     return Parity(
         findings=tuple(findings),
         markers=_table("markers", markers),
         clock=_table("clock", _sizes(clock)),
-        channels=_table("channels", _sizes(gains)),
+        channels=_table("channels", channels | _sizes(gains)),
         transducers=_table("transducers", {name: check[:2] for name, check in transducers.items()}),
         looked_at=share.hypotheses,
         falls={},

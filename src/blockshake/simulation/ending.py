@@ -12,8 +12,8 @@ _AT_HAND = 2**14  # times that are read at once
 def ending(run, structure):
     """Status of a run, the time that it reached, and its largest drift, in words.
 
-    The run file is open or loaded. The drift is that of the mass centre that moved farthest along x, y and z against
-    the first driven body.
+    The run file is open or loaded. The drift is that of the mass centre that moved farthest, in whatever direction,
+    against the first driven body.
     """
     words = f"{run.attrs['status']} at {run.attrs['end_time']:.4g} s"
     if run.attrs["status"] in FINISHED and run.attrs["reason"]:
@@ -30,7 +30,9 @@ def ending(run, structure):
     if largest is None:
         return words
     size, body, when = largest
-    return f"{words}; largest drift {1e3 * size:.3g} mm, of {structure.body_names[body]} at {when:.4g} s"
+    base = " on the base" if structure.driven.any() else ""
+    moved = f"the middle of {structure.body_names[body]} from its place{base}, in any direction"
+    return f"{words}; largest drift {1e3 * size:.3g} mm at {when:.4g} s: {moved}"
 
 
 def _largest_drift(run, structure):

@@ -197,12 +197,13 @@ def parity(structure, findings):
     """Sensors' checks of one body's markers, the other's too few."""
     markers = {marker.name: {"noise": 1e-4, "misfit": 1e-4} for marker in structure.file.markers}
     markers[structure.file.markers[-1].name] = {"noise": None, "misfit": None}
+    told, untold = {"gain": 2e-3, "gain_error": 1e-3}, {"gain": None, "gain_error": None}
     return Parity.from_json({
         "findings": [finding.as_json() for finding in findings],
         "markers": markers,
         "clock": {name: {"lag": 3e-5, "lag_error": 1e-4} for name in OPEN},
-        "channels": {},
-        "transducers": {"wire-1": {"gain": 2e-3, "gain_error": 1e-3}, "wire-2": {"gain": None, "gain_error": None}},
+        "channels": {"block-1-acc-x": told, "block-1-acc-z": untold},
+        "transducers": {"wire-1": told, "wire-2": untold},
         "looked_at": 214,
         "falls": {},
         "gaps": {},

@@ -11,7 +11,7 @@ from blockshake.diagnosis.report.content import load_diagnosed
 from blockshake.diagnosis.report.report import compose_diagnosis, make_diagnosis_report
 from blockshake.diagnosis.report.statement import not_told, statement
 from blockshake.diagnosis.verdict.track_record import procedure_digest
-from blockshake.diagnosis.verdict.verdict import load_verdict
+from blockshake.diagnosis.verdict.verdict import NOTHING_TO_GAIN, load_verdict
 from blockshake.errors import InputError
 from blockshake.files import write_json
 from blockshake.pages.writing import write_html
@@ -92,6 +92,20 @@ def test_the_box_has_the_numbers_of_the_verdict(fakes, documents):
     assert verdict.misfit.p == 1e-12
     assert verdict.parameters["eccentricity"]["offset"].estimate == 0.05
     assert verdict.row_gain.recalibrated.estimate == 0.8
+
+
+def test_the_card_of_the_gain_agrees_with_the_table(found):
+    """A recalibrated model without an error to remove stands beside a gain over the nominal one."""
+    one = found["named"]
+    gain = one.verdict.row_gain.model_copy(update={"recalibrated": NOTHING_TO_GAIN})
+    again = replace(one, verdict=one.verdict.model_copy(update={"row_gain": gain}))
+    document = compose_diagnosis(again)
+    _, value, note = document.sections[0].blocks[0].facts[2]
+    assert value == "no error to remove"
+    assert note.endswith("are within their errors; of the nominal model's error: 80 % (70 to 90 %)")
+    rows = dict(row[:2] for row in blocks_of(document, "table", "gain")[0].rows)
+    assert rows["the nominal model"] == "80 % (70 to 90 %)"
+    assert rows["the nominal model, recalibrated on the open tests"] == value
 
 
 def test_none_says_which_sizes_would_have_been_seen(documents):
@@ -194,13 +208,17 @@ def test_track_record_prints_the_shares_with_a_goal(pages, documents):
 
 def test_tests_sensors_and_files_are_accounted_for(pages, found):
     text = pages["named"][1]
-    assert f"{OPEN[0]} alkion 1 fit judged by, no joint moved" in text
+    assert f"{OPEN[0]} alkion 1 fit judged by the slab alone: no joint moved" in text
+    assert f"judged by 3 tests ({', '.join(OPEN)}), of which joints moved in 2, effort standard" in text
     assert f"{OPEN[1]} alkion 1 fit judged by" in text
     for name in SEALED:
         assert f"{name} alkion 1 sealed sealed: read for the gain alone" in text
     assert "sealed: not read" in pages["none"][1]
     assert "214 hypotheses on" in text
     assert "Not checked against others" in text
+    assert "2 accelerometer channels" in text
+    assert "Accelerometer channels whose gain the markers of their bodies tell: block-1-acc-x." in text
+    assert "the markers do not show what they read or it is small: block-1-acc-z." in text
     assert "whose gain the markers of their bodies tell: wire-1." in text
     assert "these hardly moved apart: wire-2." in text
     assert "The rotation of block-4, which has one marker." in text

@@ -25,7 +25,8 @@ def test_a_cause_that_lacks_nothing_is_established():
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        ({"decision": NAMED.model_copy(update={"silent": ("t1",)})}, "2 tests only"),
+        ({"decision": NAMED.model_copy(update={"silent": ("t1",)})}, "joints moved in 2 of 3 tests only"),
+        ({"decision": NAMED.model_copy(update={"tests": ("t1", "t2")})}, "it was judged by 2 tests only"),
         ({"decision": made_up_decision("combination", ("table-pitch",), ("weak-joint",))}, "two causes"),
         ({"beside_sensor": True}, "sensor's fault acts beside"),
         ({"measured": MEASURED.model_copy(update={"gain": None})}, "responses"),

@@ -5,7 +5,14 @@ import xarray as xr
 from blockshake.files import write_dataset
 from blockshake.study.ensembles import envelope as module
 from blockshake.study.ensembles.ensemble import DECIMALS, join_batches
-from blockshake.study.ensembles.envelope import QUANTILES, envelope, envelope_of_case, over_samples
+from blockshake.study.ensembles.envelope import (
+    QUANTILES,
+    envelope,
+    envelope_of_case,
+    is_moving,
+    over_samples,
+    still_moves,
+)
 
 ROUNDING = 1e-12  # m
 LIMIT = 0.4  # m
@@ -55,6 +62,26 @@ def test_only_runs_that_ended_well_or_collapsed_count(make_run, gather):
     block = result.sel(frame="slab", marker="block-1-face")
     assert block["peak"].sel(quantile=0.5) == pytest.approx(0.02, abs=ROUNDING)
     assert block["residual"].sel(quantile=0.5) == pytest.approx(0.015, abs=ROUNDING)
+
+
+@pytest.mark.parametrize(("size", "share"), [(2e-3, 0.75), (0.4e-3, 0.0)])
+def test_samples_that_swing_against_each_other_still_move(make_run, gather, size, share):
+    """Their median rests; one that fell has no residual and does not count, one at rest does."""
+    time = make_run(0.0)["time"].to_numpy()
+    swing = size * np.sin(20.0 * time)
+    runs = [make_run(amplitude) for amplitude in (swing, -swing, swing, 0.0)]
+    result = envelope(gather([*runs, make_run(swing, status="collapsed", end=1.0)]), LIMIT)
+    assert result["still_moving"].sel(marker="block-1-face") == share
+    assert is_moving(result, "block-1-face") == (share > 0.0)
+    assert not is_moving(result, "slab-face")
+
+
+def test_what_noise_and_a_twentieth_of_the_peak_make_is_no_motion():
+    time = np.linspace(0.0, 4.0, 401)
+    curve = xr.DataArray(2e-3 * np.sin(20.0 * time), {"time": time})  # 4 mm from end to end
+    assert still_moves(curve, 0.079)
+    assert not still_moves(curve, 0.081)
+    assert not still_moves(curve, 0.0, noise=0.51e-3)
 
 
 def test_where_nothing_contributes_there_is_no_value(make_run, gather):

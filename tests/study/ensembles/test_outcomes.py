@@ -5,7 +5,6 @@ import xarray as xr
 from blockshake.study.ensembles.outcomes import (
     count_outcomes,
     numerical_figure,
-    shortfall,
     unfinished,
 )
 
@@ -39,14 +38,3 @@ def test_figures_leave_out_samples_without_one(samples):
     assert numerical_figure(samples, "energy_residual", np.median) == 2e-4
     assert numerical_figure(samples, "numerics_steps", np.max) == 30.0
     assert np.isnan(numerical_figure(samples, "numerics_capped_steps", np.max))
-
-
-def test_shortfall_begins_where_a_counted_sample_has_no_value():
-    envelope = xr.Dataset(
-        {"contributing": ("time", [3, 3, 2, 1])},
-        coords={"time": [0.0, 0.5, 1.0, 1.5]},
-        attrs={"counted": 3, "samples": 4},
-    )
-    assert shortfall(envelope) == (3, 1, 1.0, 1)
-    whole = envelope.assign(contributing=("time", [3, 3, 3, 3]))
-    assert np.isnan(shortfall(whole).since)

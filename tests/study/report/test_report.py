@@ -11,13 +11,14 @@ from page import CLAIMS, Page
 
 from blockshake.errors import InputError
 from blockshake.files import HOME
-from blockshake.pages.blocks import Table
+from blockshake.pages.blocks import Document, Section, Table, Text, numbered
 from blockshake.pages.rows import face_markers
 from blockshake.pages.wording import number
 from blockshake.pages.writing import write_html, write_pdf
 from blockshake.study import analyses
 from blockshake.study.calibration.section import calibration
 from blockshake.study.report import content
+from blockshake.study.report.answer import answer
 from blockshake.study.report.content import load_content
 from blockshake.study.report.opening_sections import failures
 from blockshake.study.report.report import compose, make_case_report, make_report
@@ -65,7 +66,7 @@ def test_sections_and_contents(text, title):
 
 
 def test_synthetic_is_said_where_it_shows(report, text):
-    assert "The measured curves of configuration-1, configuration-4 are SYNTHETIC" in text
+    assert "The measured curves are SYNTHETIC" in text
     assert "The ground motions are synthetic, not recorded: basso-tirreno." in text
     assert "Virtual test (synthetic)" in text
     assert not [claim for claim in CLAIMS if claim in text.lower()]
@@ -147,6 +148,18 @@ def test_pdf_has_pages_and_vector_figures(report):
     assert len(re.findall(rb"/Type\s*/Page\b", pdf)) > 8
     assert b"CreationDate" not in pdf
     assert b"/Subtype/Image" not in pdf.replace(b" ", b"")
+
+
+def test_the_first_page_holds_four_cases_by_four_models(fake, tmp_path):
+    found = load_content(fake.study, fake.results)
+    cases = [
+        replace(found.cases[f"configuration-{like}"], name=f"configuration-{number}")
+        for number, like in enumerate((1, 1, 4, 4), start=1)
+    ]
+    first = answer(replace(found, cases={case.name: case for case in cases}))
+    sections = first, Section("Second page", "second", (Text("No more."),))
+    write_pdf(tmp_path / "a.pdf", numbered(Document("blockshake: study", 30 * "words ", sections)))
+    assert len(re.findall(rb"/Type\s*/Page\b", (tmp_path / "a.pdf").read_bytes())) == 2
 
 
 def test_same_results_same_bytes(document, report, tmp_path):

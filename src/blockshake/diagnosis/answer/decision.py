@@ -193,6 +193,11 @@ class Decision(Strict):
     histories: tuple[History, ...] = ()
 
     @property
+    def moved(self):
+        """Tests of which a joint turned, slipped or lifted: the equations of motion are theirs."""
+        return tuple(name for name in self.tests if name not in self.silent)
+
+    @property
     def causes(self):
         """Effects of the registry that are not excluded, the likeliest `Cause` of each name."""
         likeliest = {}

@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.diagnosis.gain.extended_model import acting_causes
 from blockshake.diagnosis.misfit.figure import add_legend, draw_history
-from blockshake.diagnosis.wording import percent_words
+from blockshake.diagnosis.wording import NO_ERROR, percent_words
 from blockshake.pages.blocks import Figure, Items, Listing, Section, Table, Text
 from blockshake.pages.drawing import BLUE, GREY, ORANGE, new_figure, svg_of
 from blockshake.pages.wording import MISSING, listed, number, quantile_percent, sentence_case
@@ -41,8 +41,9 @@ def gain_section(diagnosed):
     blocks = [
         Text(
             "The sealed tests were opened after the decision had been frozen; nothing was fitted to them. Gain: "
-            "the share of a rival's error that the model with the cause removes; 100 % leaves nothing to gain, "
-            "below 0 the cause makes the prediction worse."
+            "the share of a rival's error that the model with the cause removes; 100 % leaves no more error than the "
+            f"readings have, below 0 the cause makes the prediction worse; '{NO_ERROR}' stands where the rival is "
+            "within its errors by itself."
         ),
         _gains(verdict),
         *(

@@ -3,12 +3,12 @@
 import numpy as np
 
 from blockshake.diagnosis.report.statement import changed, not_told, sensor_causes, statement
-from blockshake.diagnosis.wording import chance_words, estimate_words, listed, name_of, percent_words
+from blockshake.diagnosis.wording import NO_ERROR, chance_words, estimate_words, name_of, percent_words
 from blockshake.effects.registry import title_of
 from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import BLACK, BLUE, LIGHT_GREY, new_figure, svg_of
 from blockshake.pages.units import printed
-from blockshake.pages.wording import sentence_case
+from blockshake.pages.wording import listed, sentence_case
 
 _OF_SLAB = {"rotation of the slab": "turn", "vertical motion of the slab": "lift"}
 _ABOUT = 0.5  # s, of a blow, that are drawn before and after it
@@ -76,7 +76,10 @@ def _gain_fact(verdict):
         reasons = [one for one in verdict.caveats if "gain was measured" in one]
         return label, "not measured", (reasons or ["nothing acts that could explain any"])[0]
     words = "on forces, of the recalibrated model's error; size frozen before; 90 % interval"
-    return label, percent_words(gain.recalibrated), words
+    removed, of_nominal = map(percent_words, (gain.recalibrated, gain.nominal))
+    if removed == NO_ERROR:
+        words = f"the recalibrated model's forces are within their errors; of the nominal model's error: {of_nominal}"
+    return label, removed, words
 
 
 def _items(diagnosed):
@@ -237,7 +240,7 @@ def plot_slab(departures, name, explained, measured_word):
 
 def _panels(tests, rows):
     """Empty figure with a column a test."""
-    figure = new_figure(0.017 + (0.052 if rows == 1 else 0.028 * rows))
+    figure = new_figure(0.017 + (0.032 if rows == 1 else 0.024 * rows))
     panels = figure.subplots(rows, len(tests), sharex="col", sharey="row", squeeze=False)
     for axes, test in zip(panels[0], tests, strict=True):
         axes.set_title(test)

@@ -47,7 +47,7 @@ def _tests_table(diagnosed):
     for test in diagnosed.campaign.tests.values():
         use = "judged by" if test.name in diagnosed.decision.tests else "left out"
         if test.name in diagnosed.decision.silent:
-            use += ", no joint moved"
+            use += " the slab alone: no joint moved"
         if test.role == "sealed":
             read = diagnosed.verdict.gain or diagnosed.verdict.row_gain
             use = "sealed: read for the gain alone" if read else "sealed: not read"

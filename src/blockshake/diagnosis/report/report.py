@@ -68,14 +68,15 @@ def make_diagnosis_report(campaign, results, effort, track_record, html, pdf):
 
 def compose_diagnosis(diagnosed):
     """The report's document from what was found; a section that has nothing to say is left out."""
-    tests = diagnosed.decision.tests
+    tests, count = diagnosed.decision.tests, len(diagnosed.decision.moved)
+    moved = f", of which joints moved in {count}" if count < len(tests) else ""
     sections = (section(diagnosed) for section in _SECTIONS)
     return numbered(
         Document(
             title=f"blockshake: diagnosis of {diagnosed.campaign.name}",
             subtitle=(
                 f"{diagnosed.structure}, judged by {count_words(len(tests), 'test')} ({', '.join(tests)})"
-                f", effort {diagnosed.effort}"
+                f"{moved}, effort {diagnosed.effort}"
             ),
             sections=tuple(section for section in sections if section),
         )

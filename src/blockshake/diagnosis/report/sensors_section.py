@@ -30,15 +30,25 @@ def _sensors(parity):
     lags = np.abs(parity.clock["lag"])
     if lags.size:
         text += f"Largest lag between markers and accelerometers {number(1e3 * lags.max(), 2)} ms. "
-    gains = parity.transducers["gain"]
-    known, others = (gains["transducer"].values[one].tolist() for one in (gains.notnull(), gains.isnull()))
-    if known:
-        text += f"Displacement transducers whose gain the markers of their bodies tell: {', '.join(known)}. "
-    if others:
-        text += (
-            "Displacement transducers whose gain nothing tells, as the markers do not see their ends or these "
-            f"hardly moved apart: {', '.join(others)}. "
+    for gains, sensors, why in (
+        (
+            parity.channels["gain"],
+            "Accelerometer channels",
+            "the markers do not show what they read or it is small",
+        ),
+        (
+            parity.transducers["gain"],
+            "Displacement transducers",
+            "the markers do not see their ends or these hardly moved apart",
+        ),
+    ):
+        known, others = (
+            gains[gains.dims[0]].values[one].tolist() for one in (gains.notnull(), gains.isnull())
         )
+        if known:
+            text += f"{sensors} whose gain the markers of their bodies tell: {', '.join(known)}. "
+        if others:
+            text += f"{sensors} whose gain nothing tells, as {why}: {', '.join(others)}. "
     return text if parity.findings else f"{text}No fault was found."
 
 

@@ -1,12 +1,6 @@
 """Third section of a diagnosis: what was added to the model, its size with interval, and what it rests on."""
 
-from blockshake.diagnosis.wording import (
-    estimate_words,
-    place_words,
-    range_words,
-    size_words,
-    when_words,
-)
+from blockshake.diagnosis.wording import estimate_words, place_words, range_words, size_words, when_words
 from blockshake.effects.registry import EFFECTS
 from blockshake.pages.blocks import Items, Section, Table
 

@@ -44,7 +44,7 @@ def statement(diagnosed):
 
 
 def _looked_at(decision):
-    tests = count_words(len(decision.tests), "test")
+    tests = count_words(len(decision.moved or decision.tests), "test")
     return f"{count_words(decision.n_rows, 'equation')} of motion in {tests}"
 
 

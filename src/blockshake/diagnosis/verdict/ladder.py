@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from blockshake.pages.wording import count_words
+
 ESTABLISHED, PROBABLE, ONE_OF = "established", "probable", "one of"
 UNKNOWN, NOTHING = "something acts, cause unknown", "no misfit larger than chance"
 _TESTS_TO_ESTABLISH = 3
@@ -40,9 +42,13 @@ def rung(kind, decision, beside_sensor, measured):
         missing.append("a sensor's fault acts beside it")
     if any(path.beats for path in decision.histories):
         missing.append("sizes that change from test to test explain more")
-    tests = len(decision.tests) - len(decision.silent)
-    if decision.n_rows and tests < _TESTS_TO_ESTABLISH:
-        missing.append(f"it was judged by {tests} tests only")
+    moved, tests = len(decision.moved), count_words(len(decision.tests), "test")
+    if decision.n_rows and moved < _TESTS_TO_ESTABLISH:
+        missing.append(
+            f"joints moved in {moved} of {tests} only"
+            if decision.silent
+            else f"it was judged by {tests} only"
+        )
     missing += _of_gain(measured) if decision.causes else ["the sensors' checks alone found it"]
     return Rung(PROBABLE if missing else ESTABLISHED, tuple(missing))
 

@@ -8,8 +8,8 @@ from blockshake.pages.blocks import Heading, Items, Section, Text
 from blockshake.pages.wording import count_words, given, model_label, share_words
 from blockshake.study.comparison.comparison import CHANGES
 from blockshake.study.comparison.tables import (
-    at_top,
     in_millimetres,
+    of_tops,
     other_settings,
     other_settings_table,
     pairs_table,
@@ -76,15 +76,15 @@ def case_words(case):
 
 
 def _settings_words(content, model):
-    """In how many cases the settings of a model are shown to change what, in a sentence."""
-    shown, cases = [], [at_top(case).sel(model=model) for case in content.cases.values()]
+    """Of how many top blocks the settings of a model are shown to change what, in a sentence."""
+    shown, tops = [], of_tops(content, [model])
+    changes = [case.differences.sel(model=model, marker=marker) for case, (_, marker), _ in tops]
     for name in CHANGES:
-        known = [
-            one for case in cases if np.isfinite(one := case[f"{name}_change_interval"].to_numpy()).all()
-        ]
+        limits = [one[f"{name}_change_interval"].to_numpy() for one in changes]
+        known = [one for one in limits if np.isfinite(one).all()]
         beyond = sum(one.prod() > 0.0 for one in known)
-        shown.append(f"{name} in {share_words(beyond, len(known))}")
-    return f"{model_label(model)}: cases in which the limits of a change leave out zero: {', '.join(shown)}."
+        shown.append(f"{name} of {share_words(beyond, len(known))}")
+    return f"{model_label(model)}: top blocks of which the limits of a change leave out zero: {', '.join(shown)}."
 
 
 def _both(pair):

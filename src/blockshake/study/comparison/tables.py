@@ -1,21 +1,27 @@
 """Tables of what differs between the models: blocks, pairs of models, scores."""
 
-from itertools import chain, combinations
+from itertools import chain, combinations, product
 
 import numpy as np
 
-from blockshake.pages.blocks import Table
-from blockshake.pages.rows import face_markers
-from blockshake.pages.wording import MISSING, given, limited, millimetres, model_label, number
+from blockshake.pages.blocks import Table, Text
+from blockshake.pages.rows import face_markers, top_markers
+from blockshake.pages.wording import MISSING, given, limited, millimetres, model_label, number, sentence_case
 from blockshake.simulation.models import solver_of
 from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.comparison.comparison import CHANGES, MOST
 from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
+from blockshake.study.ensembles.envelope import is_moving, still_moves
+
+MOVING = "still moving"  # in place of a residual
+_SWINGS = (
+    f"{sentence_case(MOVING)[:-1]}: the block changes its place in the last second by more than 1 mm and a 20th of its "
+    "peak, in half of the samples or more."
+)
 
 
 def block_tables(case):
-    """Peak and residual of every block by every model, a table each."""
-    found = case.differences
+    """Peak and residual of every block by every model, a table each, or a sentence where all blocks still move."""
     at_end = f"mean over the last {given(RESIDUAL_WINDOW)} s of the window"
     limits = (
         f"In brackets limits of 95 % by order statistics, which fewer than {SURE_FROM} samples do not bear."
@@ -23,31 +29,38 @@ def block_tables(case):
     captions = {
         "peak": f"peak displacement along x relative to the slab [mm], median over the n samples. {limits}",
         "residual": f"residual displacement ({at_end}) relative to the slab [mm], median over those of the n samples "
-        f"that did not fall. {limits}",
+        f"that did not fall. {_SWINGS} {limits}",
     }
-    return [_block_table(case, found, name, f"{case.name}: {words}") for name, words in captions.items()]
+    return [_block_table(case, name, f"{case.name}: {words}") for name, words in captions.items()]
 
 
-def _block_table(case, found, name, caption):
-    rows = []
-    compared = case.measured is not None and name in case.measured
+def _block_table(case, name, caption):
+    rows, read = [], [] if case.measured is None else [sentence_case(case.curve_word)[:-1]]
     for body, marker in face_markers(case.structure).items():
-        at = found.sel(marker=marker)
-        known = compared and marker in case.measured["marker"].values
-        read = (
-            [millimetres(case.measured[name].sel(frame="slab", marker=marker)) if known else MISSING]
-            if compared
-            else []
-        )
-        rows.append(
-            (body, *read, *(limited(at.sel(model=model), name, millimetres) for model in case.responses))
-        )
-    labels = (
-        f"{model_label(model)} (n = {int(found['counted'].sel(model=model))})" for model in case.responses
-    )
-    word = f"{case.curve_word[0].upper()}{case.curve_word[1:]}"
-    header = ("Block", *([word] if compared else []), *labels)
+        known = bool(read) and marker in case.measured["marker"].values
+        cells = [_measured(case, name, marker) if known else MISSING] * len(read)
+        rows.append((body, *cells, *(_shown(case, model, name, marker) for model in case.responses)))
+    counted = case.differences["counted"]
+    labels = (f"{model_label(model)} (n = {int(counted.sel(model=model))})" for model in case.responses)
+    header = ("Block", *read, *labels)
+    if {cell for row in rows for cell in row[1:]} == {MOVING}:
+        return Text(f"{case.name}: what displacement remains is not told, for every block moves. {_SWINGS}")
     return Table(caption, header, tuple(rows), "l" + "r" * (len(header) - 1))
+
+
+def _shown(case, model, name, marker, alone=False):
+    """A figure of a block by a model in words [mm], with its limits or ``alone``; none of a block that still moves."""
+    if name == "residual" and is_moving(case.responses[model].envelope, marker):
+        return MOVING
+    at = case.differences.sel(model=model, marker=marker)
+    return millimetres(at[name]) if alone else limited(at, name, millimetres)
+
+
+def _measured(case, name, marker):
+    """A figure of the measured curve of a marker relative to the slab in words [mm]."""
+    at = case.measured.sel(frame="slab", marker=marker)
+    moves = name == "residual" and still_moves(at["displacement"], at["peak"], case.marker_noise)
+    return MOVING if moves else millimetres(at[name])
 
 
 def pairs_table(content):
@@ -108,34 +121,36 @@ def other_settings(content):
 
 
 def other_settings_table(content):
-    """Changes by other settings of a solver at the top block; None where no model has any."""
+    """Changes by other settings of a solver at the top block of every leaf; None where no model has any."""
     if not other_settings(content):
         return None
     rows = []
-    for case in content.cases.values():
-        for model in other_settings(content):
-            own, plain = (at_top(case).sel(model=name) for name in (model, solver_of(model).name))
-            pairs = (
-                (millimetres(plain[name]), limited(own, f"{name}_change", millimetres)) for name in CHANGES
-            )
-            rows.append((case.name, model_label(model), str(int(own["changed"])), *chain(*pairs)))
+    for case, (body, marker), model in of_tops(content, other_settings(content)):
+        plain, own = solver_of(model).name, case.differences.sel(marker=marker, model=model)
+        pairs = (
+            (_shown(case, plain, name, marker, alone=True), limited(own, f"{name}_change", millimetres))
+            for name in CHANGES
+        )
+        rows.append((f"{case.name}, {body}", model_label(model), str(int(own["changed"])), *chain(*pairs)))
     heads = (f"{head} [mm]" for name in CHANGES for head in (name.capitalize(), "Change"))
     return Table(
-        "One solver with other settings, at the top block, along x relative to the slab. Peak and residual: medians "
-        "over the samples by the model of the solver's plain name; width of its envelope: mean difference of two "
-        "samples. Change: what the same n samples by the named model have more, of peak and residual the median of "
-        "the differences with limits of 95 % by order statistics, of the width with bootstrap limits. Limits that hold "
-        "zero show no change. A sample that failed by either model is left out of n, and one that fell has no residual "
-        f"and the peak that it had reached. {MISSING.capitalize()}: too few samples.",
-        ("Case", "Model", "n", *heads),
+        "One solver with other settings, at the top block of every leaf, along x relative to the slab. Peak and "
+        "residual: medians over the samples by the model of the solver's plain name; width of its envelope: mean "
+        f"difference of two samples. {_SWINGS} Change: what the same n samples by the named model have more, of peak "
+        "and residual the median of the differences with limits of 95 % by order statistics, of the width with "
+        "bootstrap limits. Limits that hold zero show no change. A sample that failed by either model is left out of "
+        "n, and one that fell has no residual and the peak that it had reached. "
+        f"{MISSING.capitalize()}: too few samples.",
+        ("Case, block", "Model", "n", *heads),
         tuple(rows),
         "llrrrrrrr",
     )
 
 
-def at_top(case):
-    """Differences of the models of a case at the marker of its top block."""
-    return case.differences.sel(marker=next(iter(face_markers(case.structure).values())))
+def of_tops(content, models):
+    """Cases, the top block of each of their leaves with its marker, and models: tuples."""
+    for case in content.cases.values():
+        yield from product([case], top_markers(case.structure).items(), models)
 
 
 def scores_table(content):

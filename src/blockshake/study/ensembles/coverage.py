@@ -104,28 +104,10 @@ def coverage(measured, ensemble, marker_noise):
 
 
 def compared_curves(measured, ensemble, marker_noise, seed):
-    """Measured and simulated displacement along x at the same times, inertial frame [m].
+    """Displacement along x of a measured curve and of an ensemble at the same times, inertial frame [m].
 
-    Parameters
-    ----------
-    measured, ensemble, marker_noise
-        The arguments of `coverage`; the measured times need not be those of the ensemble.
-    seed : int
-        Of the noise that the members are read with.
-
-    Returns
-    -------
-    read : xarray.DataArray, (time, marker)
-        Measured.
-    members : xarray.Dataset
-        Completed and collapsed samples of the ensemble.
-    curves, readings : float64 arrays, shape (n_samples, n_times, n_markers)
-        Of the members, and the same with a marker's noise.
-
-    Raises
-    ------
-    InputError
-        No marker or no time in common.
+    Arguments and errors are those of `coverage`; ``seed`` is of the noise. Returned: the measured curve (time,
+    marker), the samples that count, and their curves without and with a marker's noise (n_samples, n_times, n_markers).
     """
     members = counted_samples(ensemble)
     read, curves = curves_along_x(measured, members)

@@ -7,22 +7,22 @@ from blockshake.dynamics.system import FALLEN, FINISHED
 from blockshake.files import history
 from blockshake.geometry.reference_block import half_width
 from blockshake.simulation.run_histories import JOINT_FIGURES
-from blockshake.statistics.intervals import (
-    CONFIDENCE,
-    quantile_interval,
-    sample_quantiles,
-    share_interval,
-)
+from blockshake.statistics.intervals import CONFIDENCE, quantile_interval, sample_quantiles, share_interval
 from blockshake.study.ensembles.ensemble import POSES, describe, in_frames, join_batches
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 BOUNDS = {"lower": 0.0, "upper": 1.0}
+STILL = 1e-3  # m, of a displacement that counts as none
+_LAST, _RESTLESS = 1.0, 0.05  # s of a curve's end, and share of its peak by which it still moves then
+_NOISE = 6.0  # standard deviations between the largest and the smallest of two hundred readings
+_MOST = 0.5  # of the samples, from which on a block counts as moving
 _AT_HAND = 2**25  # displacements read from files at a time: 256 MiB
 _SINGLE = ("peak", "residual", "peak_rotation", *JOINT_FIGURES)  # numbers of a sample
 _DESCRIBED = {
     "marker_envelope": ("smallest and largest marker displacement over the samples", "m"),
     "marker_displacement": ("marker displacement since the start", "m"),
     "contributing": ("samples with a value at this time", "1"),
+    "still_moving": ("share of the samples with a residual that still move along x in the last second", "1"),
     "quantile": ("probability of a smaller value", "1"),
 }
 
@@ -30,6 +30,20 @@ _DESCRIBED = {
 def counted_samples(ensemble):
     """The samples that enter statistics: runs that completed, collapsed or still fell as the window ended."""
     return ensemble.isel(sample=np.isin(ensemble["status"].values, FINISHED))
+
+
+def still_moves(along, peak, noise=0.0):
+    """Whether curves along x over ``time``, xarray.DataArray [m], change in their last second beyond their noise.
+
+    By more than 1 mm and a 20th of their ``peak`` [m], and what ``noise`` of this standard deviation adds [m].
+    """
+    late = along.sel(time=slice(float(along["time"][-1]) - _LAST, None))
+    return late.max("time") - late.min("time") > np.maximum(STILL, _RESTLESS * peak) + _NOISE * noise
+
+
+def is_moving(envelope, marker):
+    """Whether a marker still moves at the end of the window in half of the samples of an `envelope` or more."""
+    return bool(envelope["still_moving"].sel(marker=marker) >= _MOST)
 
 
 def envelope_of_case(batches, largest_drift, structure=None):
@@ -64,7 +78,8 @@ def envelope(ensemble, largest_drift, displacement=None):
         time, coordinate ``bound`` lower and upper; ``marker_displacement(frame, quantile, time, marker, axis)`` [m];
         ``peak`` and ``residual(quantile, frame, marker)`` [m]; ``peak_rotation(quantile, body)`` [rad];
         `joint_figures` of joints ``(quantile, joint)``;
-        ``contributing(time)``: samples with a value at that time; ``collapse_probability`` and
+        ``contributing(time)``: samples with a value at that time; ``still_moving(marker)``: share of those with a
+        residual of which `still_moves` holds relative to the slab; ``collapse_probability`` and
         ``drift_probability(marker)`` [1]. NaN where no sample has a value. The statistics of single numbers have their
         95 % limits beside them, ``NAME_interval(bound, ...)``, those of quantiles NaN of too few samples
         (`quantile_ranks`). Attributes ``samples`` and ``counted``: how many runs
@@ -83,13 +98,16 @@ def envelope(ensemble, largest_drift, displacement=None):
     failed = ensemble.sizes["sample"] - counted.sizes["sample"]
     probabilities = xr.DataArray(list(QUANTILES), dims="quantile", coords={"quantile": list(QUANTILES)})
     bounds = xr.DataArray(list(BOUNDS.values()), dims="bound", coords={"bound": list(BOUNDS)})
-    edges, quantiles, known = _over_markers(counted, displacement or _held(ensemble), bounds, probabilities)
+    edges, quantiles, moving, known = _over_markers(
+        counted, displacement or _held(ensemble), bounds, probabilities
+    )
     result = xr.Dataset(
         {
             "marker_envelope": edges,
             "marker_displacement": quantiles,
             **{name: over_samples(counted[name], probabilities) for name in _SINGLE},
             "contributing": known.sum("sample"),
+            "still_moving": moving,
         }
     ).transpose("frame", "bound", "quantile", "time", "marker", "body", "joint", "axis")
     result = result.merge(_probabilities(counted, failed, largest_drift)).merge(
@@ -118,12 +136,13 @@ def _held(ensemble):
 
 
 def _over_markers(counted, displacement, bounds, probabilities):
-    """Bounds and quantiles of the displacement of every marker in both frames, and which samples have a value when.
+    """Bounds and quantiles of the displacement of every marker in both frames, the share of the samples that still
+    move, and which samples have a value when.
 
     As many markers are read at a time as `_AT_HAND` allows, and one is worked on.
     """
     slab, markers = counted.attrs["slab_marker"], counted["marker"].values
-    edges, quantiles, known = [], [], True
+    edges, quantiles, moving, known = [], [], [], True
     count = max(1, _AT_HAND // (3 * counted.sizes["time"] * max(1, counted.sizes["sample"])))
     for first in range(0, len(markers), count):
         group = markers[first : first + count]
@@ -132,9 +151,13 @@ def _over_markers(counted, displacement, bounds, probabilities):
             pair = read.sel(marker=list(dict.fromkeys([marker, slab])))
             known = pair.sel(marker=marker, drop=True).notnull().all("axis") & known
             both = in_frames(pair, slab).sel(marker=[marker])
+            of_slab, peak = (one.sel(frame="slab", drop=True) for one in (both, counted["peak"]))
+            moves = still_moves(of_slab.sel(axis="x", drop=True), peak.sel(marker=[marker]))
+            ended = counted["residual"].sel(frame="slab", marker=[marker], drop=True).notnull()
+            moving.append(moves.where(ended).mean("sample"))
             edges.append(over_samples(both, bounds))
             quantiles.append(over_samples(both, probabilities))
-    return xr.concat(edges, dim="marker"), xr.concat(quantiles, dim="marker"), known
+    return *(xr.concat(one, dim="marker") for one in (edges, quantiles, moving)), known
 
 
 def _probabilities(counted, failed, largest_drift):

@@ -27,19 +27,6 @@ class Outcomes(NamedTuple):
         return self.completed + self.collapsed + self.falling
 
 
-class Shortfall(NamedTuple):
-    """Samples that are missing from the statistics of an ensemble.
-
-    ``since`` is the first time without a value of every counted sample [s], NaN where there is none; ``at_end``
-    counts the samples with a value at the last time.
-    """
-
-    counted: int
-    failed: int
-    since: float
-    at_end: int
-
-
 def count_outcomes(status):
     """`Outcomes` of samples from their statuses, as in the variable ``status`` of an ensemble."""
     status = np.asarray(status, dtype=str)
@@ -61,11 +48,3 @@ def numerical_figure(samples, name, statistic):
     values = np.asarray(samples.get(name, []), dtype=float)
     values = values[np.isfinite(values)]
     return float(statistic(values)) if len(values) else np.nan
-
-
-def shortfall(envelope):
-    """`Shortfall` of an `envelope`: samples missing from its statistics, or from those of its late times."""
-    there, counted = envelope["contributing"].values, int(envelope.attrs["counted"])
-    fewer = np.flatnonzero(there < counted)
-    since = float(envelope["time"][fewer[0]]) if len(fewer) else np.nan
-    return Shortfall(counted, int(envelope.attrs["samples"]) - counted, since, int(there[-1]))

@@ -117,7 +117,8 @@ def _figure(case, nominal):
     shown = envelopes, case.measured, [markers[body] for body in bodies], bodies, "slab", case.synthetic
     measured = "" if case.measured is None else f"; dashed: {case.curve_word}"
     return Figure(
-        f"{nominal.name}: displacement relative to the slab, without and with the cause{measured}.",
+        f"{nominal.name}: displacement relative to the slab, without and with the cause{measured}. Of blocks of one "
+        "height the first is drawn.",
         svg_of(plot_displacements, *shown),
     )
 

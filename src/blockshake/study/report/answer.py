@@ -18,14 +18,9 @@ from blockshake.pages.wording import (
     share_words,
 )
 from blockshake.study.ensembles.coverage import is_likely
+from blockshake.study.ensembles.envelope import STILL
 from blockshake.study.report.answer_figure import plot_answer
-from blockshake.study.report.case_outcomes import (
-    STILL,
-    models_apart,
-    most_telling,
-    outcomes,
-    shares_at_impacts,
-)
+from blockshake.study.report.case_outcomes import models_apart, most_telling, outcomes, shares_at_impacts
 from blockshake.study.report.open_questions import ALIKE, MOST, next_steps, unknown
 
 
@@ -39,18 +34,19 @@ def answer(content):
     shown = content.cases[most_telling(found)]
     blocks = [
         Text(_asked(content)),
-        Box(_verdict(content, found), _facts(content, found, shown)),
+        Box(_verdict(found), _facts(content, found, shown)),
         *_synthetic(content),
         _figure(content, found, shown),
         _lines(content, found),
     ]
     compared = _measured(content, found)
     said = [*_why(content, found), *compared]
-    said += [
-        f"Half of the samples of {name} fall below {number(float(one['median']), 2)} times its motion (fragility)."
+    halves = [
+        f"{number(float(one['median']), 2)} times the motion ({name})"
         for name, one in content.fragility.items()
         if np.isfinite(one["median"])
     ]
+    said += [f"Half of the samples fall below {listed(halves)}." for _ in halves[:1]]
     for title, key, sentences in (
         ("Blows between blocks that stand apart", "blows", _blows(found)),
         ("Why the models differ" if not compared else "Models and tests beside each other", "beside", said),
@@ -63,12 +59,9 @@ def answer(content):
 
 def _asked(content):
     """The cases, models and samples in a sentence."""
-    cases = "; ".join(
-        f"{listed(names)} under {listed(motions)}" for names, motions in _grouped(content, content.cases)
-    )
+    under = dict.fromkeys(_under(content, case) for case in content.cases.values())
     seconds = dict.fromkeys(f"{given(case.settings['duration'])} s" for case in content.cases.values())
-    cases += f", {' or '.join(seconds)}"
-    labels = [model_label(model) for model in content.study["models"]]
+    cases = f"{listed(list(content.cases))} under {listed(list(under))}, {' or '.join(seconds)}"
     sizes = [
         one.samples.sizes["sample"] for case in content.cases.values() for one in case.responses.values()
     ]
@@ -79,17 +72,7 @@ def _asked(content):
     if any("records" in content.motions[case.motion].attrs for case in content.cases.values()):
         kinds |= {"ground motion": None}
     uncertain = f"Uncertain: {listed(list(kinds))}." if kinds else ""
-    return f"Asked: {cases}, by {listed(labels)}, {samples} each. {uncertain}".rstrip()
-
-
-def _grouped(content, names):
-    """Structures of some cases with their motions, those of the same motions together: pairs of lists of words."""
-    motions, alike = {}, {}
-    for case in map(content.cases.get, names):
-        motions.setdefault(case.structure.file.name, []).append(_under(content, case))
-    for structure, under in motions.items():
-        alike.setdefault(tuple(under), []).append(structure)
-    return [(structures, list(under)) for under, structures in alike.items()]
+    return f"Asked: {cases}, by {_models(content.study['models'])}, {samples} each. {uncertain}".rstrip()
 
 
 def _under(content, case):
@@ -100,7 +83,7 @@ def _under(content, case):
     return f"{case.motion} x {given(case.settings['scale'])} ({peak})"
 
 
-def _verdict(content, found):
+def _verdict(found):
     """Which cases stand, which may collapse and which do, in a sentence."""
     sides = {"stand": [], "may": [], "fall": []}
     for name, ended in found.items():
@@ -108,70 +91,56 @@ def _verdict(content, found):
         sides["stand" if not any(shares) else "fall" if min(shares) == 1.0 else "may"].append(name)
 
     def named(names, verb):
-        groups = _grouped(content, names)
-        return "; ".join(
-            f"{listed(structures)} {verb}{'s' if len(structures) == 1 and verb != 'may collapse' else ''} under "
-            f"{listed(motions)}"
-            for structures, motions in groups
-        )
+        if len(names) == 1:
+            return f"{names[0]} {verb}s"
+        every = {2: "Both"}.get(len(names), f"All {len(names)}")
+        return f"{f'{every} cases' if len(names) == len(found) else listed(names)} {verb}"
 
     def runs(names):
-        return sum(one.counted for name in names for one in found[name].values())
+        count = sum(one.counted for name in names for one in found[name].values())
+        models = dict.fromkeys(model for name in names for model in found[name])
+        return f"{count_words(count, 'run')} by {_models(models)}"
 
     words = []
     if names := sides["stand"]:
         every = [one for name in names for one in found[name].values()]
         upper, fewest = max(one.limits[1] for one in every), min(one.counted for one in every)
         words.append(
-            f"{named(names, 'stand')}: none of {count_words(runs(names), 'run')} by {_by(found, names)} collapses; "
-            f"from {count_words(fewest, 'run')} of a case by a model, a collapse may still be as likely as "
-            f"{_whole(upper)} % (limit of 95 %)"
+            f"{named(names, 'stand')}: none of {runs(names)} collapses; as few as {count_words(fewest, 'run')} of a "
+            f"case by a model leave a probability of up to {_whole(upper)} %"
         )
     for name in sides["may"]:
         by = [
-            f"{share_words(one.collapsed, one.counted)} by {model_label(model)}"
+            f"{share_words(one.collapsed, one.counted)} runs by {model_label(model)}"
             for model, one in found[name].items()
             if one.collapsed
         ]
-        others = "" if len(by) == len(found[name]) else ", and none by the others"
-        words.append(f"{named([name], 'may collapse')}: of the runs, {listed(by)} do{others}")
+        others = "" if len(by) == len(found[name]) else ", in none by the others"
+        words.append(f"{name} may collapse: in {listed(by)}{others}")
     if names := sides["fall"]:
-        words.append(f"{named(names, 'collapse')}: so do all {runs(names)} runs by {_by(found, names)}")
+        words.append(f"{named(names, 'collapse')}: so do all {runs(names)}")
     return ". ".join(words) + "."
 
 
-def _by(found, names):
-    """Models of cases in words."""
-    models = list(dict.fromkeys(model for name in names for model in found[name]))
-    return (
-        model_label(models[0])
-        if len(models) == 1
-        else "both models"
-        if len(models) == 2
-        else f"{len(models)} models"
-    )
+def _models(models):
+    """Names of one model or two, or how many there are: the table of the cases names them."""
+    return listed([*map(model_label, models)]) if len(models) < MOST else f"{len(models)} models"
 
 
 def _facts(content, found, shown):
     """The three numbers of the box: farthest block, least margin, collapses."""
-    ended, under = (
-        found[shown.name],
-        f"{shown.name}, until a fall"
-        if any(one.collapsed for one in found[shown.name].values())
-        else shown.name,
-    )
+    ended, under = found[shown.name], shown.name
+    if any(one.collapsed for one in ended.values()):
+        under += ", until a fall"
     far = max(ended.values(), key=lambda one: one.peak)
     near = min(ended.values(), key=lambda one: one.margin if np.isfinite(one.margin) else np.inf)
     marked, blocks = len(face_markers(shown.structure)), int((~shown.structure.driven).sum())
-    every = [(name, model) for name in found for model in found[name]]
-    worst, by = max(every, key=lambda one: found[one[0]][one[1]].share)
-    fell = found[worst][by]
-    if fell.collapsed:
-        of, where = f"{fell.collapsed} of {fell.counted}", f"{worst} by {model_label(by)}"
-    else:
-        fell = min((found[name][model] for name, model in every), key=lambda one: one.counted)
-        of = f"none of {sum(found[name][model].counted for name, model in every)}"
-        where = "in each case by each model"
+    every = {(name, model): one for name in found for model, one in found[name].items()}
+    (worst, by), fell = max(every.items(), key=lambda item: item[1].share)
+    of, where = f"{fell.collapsed} of {fell.counted}", f"{worst} by {model_label(by)}"
+    if not fell.collapsed:
+        fell = min(every.values(), key=lambda one: one.counted)
+        of, where = f"none of {sum(one.counted for one in every.values())}", "in each case by each model"
     return (
         (
             "Farthest from its place on the slab",
@@ -184,11 +153,7 @@ def _facts(content, found, shown):
             f"above {near.over}; {_by_leaf(ended)}{under}; medians{_ends(ended, 'margin')}; at rest 100 %, weight "
             "over the edge 0 %",
         ),
-        (
-            "Samples that collapse",
-            of,
-            f"{where}: probability {_limits(fell)}, 95 % limits{_falling(fell)}",
-        ),
+        ("Samples that collapse", of, f"{where}: probability {_limits(fell)}, 95 % limits{_falling(fell)}"),
     )
 
 
@@ -219,10 +184,10 @@ def _blows(found):
         words = [
             f"in {share_words(one.struck, one.counted)} samples by {model_label(model)}, at most "
             f"{count_words(one.blows, 'blow')} in one, the fastest at {one.blow:.2f} m/s ({one.pair})"
-            if one.struck
-            else f"none by {model_label(model)}"
             for model, one in ended.items()
+            if one.struck
         ]
+        words += ["none by the others"] if len(words) < len(ended) else []
         said.append(f"{name}: {'; '.join(words)}.")
     if not said:
         apart = any(len(one.leaves) > 1 for ended in found.values() for one in ended.values())
@@ -251,30 +216,34 @@ def _whole(share):
 def _lines(content, found):
     """A row a case: what its blocks do by every model, and how sure that is."""
     models = [model for model in content.study["models"] if any(model in ended for ended in found.values())]
-    rows = [
-        (
-            f"{name}: {_under(content, content.cases[name])}",
-            *(_done(ended[model]) if model in ended else MISSING for model in models),
-        )
-        for name, ended in found.items()
-    ]
+    under, rows = {name: _under(content, content.cases[name]) for name in found}, []
+    for name, ended in found.items():
+        blocks = {one.block for one in ended.values()}
+        case = [name, *(blocks if len(blocks) == 1 else ())]
+        case += [under[name]] if len(set(under.values())) > 1 else []
+        rows.append((
+            ", ".join(case),
+            *(_done(ended[model], len(blocks) > 1) if model in ended else MISSING for model in models),
+        ))  # fmt: skip
     return Table(
-        "Verdict of every case. Moves by: largest displacement along x from its place on the slab, of the block that "
-        "moves farthest; median of the samples, smallest and largest in brackets. Collapse: limits of 95 % of its "
-        "probability.",
-        ("Case", *map(model_label, models)), tuple(rows), "l" * (len(models) + 1), (3, *[4] * len(models)),
+        "Every case and the block that moves farthest: its largest displacement along x from its place on the slab, "
+        "median of the samples, smallest and largest in brackets, and what is left where it rests at the end; limits "
+        "of 95 % of the probability of a collapse.",
+        ("Case, block", *map(model_label, models)), tuple(rows), "l" * (len(models) + 1), (2.4, *[4] * len(models)),
     )  # fmt: skip
 
 
-def _done(one):
+def _done(one, named):
+    """Words on the block of an `Outcome`, with its name where it is ``named``."""
     sure = _limits(one)
     if one.collapsed:
         return f"{share_words(one.collapsed, one.counted)} samples collapse{_falling(one)}: {sure}"
     if one.most < STILL:
         return f"stands, unmoved; collapse {sure}"
-    left = f", {_length(one.end)} mm left" if np.isfinite(one.end) else ", still moving at the end"
+    left = f", {_length(one.end)} left" if np.isfinite(one.end) else ""
     spread = f"{_length(one.least)} to {_length(one.most)}" if one.counted > 1 else "1 sample"
-    return f"stands; {one.block} moves by {_length(one.peak)} mm ({spread}){left}; collapse {sure}"
+    block = f"{one.block} " if named else ""
+    return f"stands; {block}{_length(one.peak)} mm ({spread}){left}; collapse {sure}"
 
 
 def _limits(one):
@@ -285,7 +254,7 @@ def _limits(one):
 
 def _falling(one):
     """Samples among the collapsed ones that were not down when the window ended, in words."""
-    return f" ({one.falling} of them still fall as the window ends)" if one.falling else ""
+    return f" ({one.falling} still falling)" if one.falling else ""
 
 
 def _figure(content, found, shown):
@@ -293,9 +262,8 @@ def _figure(content, found, shown):
     structures = {case.settings["structure"]: case.structure for case in content.cases.values()}
     curve = f"; dashed: {shown.curve_word}" if shown.measured is not None else ""
     return Figure(
-        f"Left: {listed([structure.file.name for structure in structures.values()])}. Right: {one.block} (red) under "
-        f"{_under(content, shown)}, displacement along x from its place on the slab: medians of the samples, and bands "
-        f"from the smallest to the largest{curve}.",
+        f"The structures, and {one.block} (red) of {shown.name}: displacement along x from its place on the slab, "
+        f"medians of the samples, and bands from the smallest to the largest{curve}.",
         svg_of(plot_answer, list(structures.values()), shown, one.marker),
     )
 
@@ -309,12 +277,12 @@ def _why(content, found):
     falls, _, name, *models = max(apart)
     case, (near, far) = content.cases[name], map(model_label, models)
     how = "collapses more often" if falls else "moves the blocks farther"
-    words = [f"under {name} {far} {how} than {near}"]
+    words = [f"in {name} {far} {how} than {near}"]
     if impacts := shares_at_impacts(case, models):
         joint, (less, more, plastic) = impacts
         words.append(
             f"at {joint}, the joint that opens most, impacts keep {less:.2f} of the spin by {near} and {more:.2f} by "
-            f"{far}; all above it, turning as one and struck at the other edge alone, keeps {plastic:.2f} (Housner)"
+            f"{far}; all above it, as one body struck at the other edge alone, keeps {plastic:.2f} (Housner)"
         )
         words.append(
             "impacts do not tell the models apart"
@@ -328,11 +296,12 @@ def _why(content, found):
             case.responses[model].envelope[figure].sel(quantile=0.5).dropna("joint") for model in models
         ]
         if all(values.size for values in largest):
+            joints = [str(values["joint"].values[values.argmax("joint")]) for values in largest]
             sizes = [
-                f"{_length(float(values.max()))} mm by {label} ({values['joint'].values[values.to_numpy().argmax()]})"
-                for values, label in zip(largest, (near, far), strict=True)
+                f"{_length(float(values.max()))} mm by {label}{f' ({joint})' * (joint != joints[-1])}"
+                for values, label, joint in zip(largest, (near, far), joints, strict=True)
             ]
-            words.append(f"the largest {noun} is {' and '.join(sizes)}")
+            words.append(f"the largest {noun} is {' and '.join(sizes)} ({joints[-1]})")
     return [" ".join(map(sentence_case, words))]
 
 
@@ -345,15 +314,19 @@ def _measured(content, found):
         if case.measured is None or one.marker not in case.measured["marker"].values:
             continue
         peak = float(case.measured["peak"].sel(frame="slab", marker=one.marker))
-        fits = {True: [], False: []}
+        fits = {}
         for model in ended:
             comparison = case.responses[model].comparison
             chance = float(comparison["curve_probability"].sel(marker=one.marker))
             if np.isfinite(chance):
-                fits[is_likely(chance, int(comparison.attrs["counted"]))].append(model_label(model))
-        like = [f"{word} {listed(fits[at])}" for word, at in (("like", True), ("unlike", False)) if fits[at]]
+                fits[model_label(model)] = is_likely(chance, int(comparison.attrs["counted"]))
+        like = [label for label, fit in fits.items() if fit]
+        if len(fits) > 1 and len(like) in (0, len(fits)):
+            like = [f"all {len(fits)} models"]
+        word = "like" if any(fits.values()) else "unlike"
         words[case.curve_word] = None
-        said.append(f"{name}, {one.block} moves by {', '.join([f'{_length(peak)} mm', *like])}")
+        told = f", {word} {listed(like or [*fits])}" if fits else ""
+        said.append(f"{name}, {one.block} moves by {_length(peak)} mm{told}")
     return [f"{sentence_case(' and '.join(words))[:-1]}: {'; '.join(said)}."] if said else []
 
 
@@ -361,12 +334,13 @@ def _synthetic(content):
     """Remark on curves and motions that nobody measured."""
     cases, words = content.cases.values(), []
     tests = [case.name for case in cases if case.synthetic]
+    of = "" if len(tests) == len(cases) else f" of {', '.join(tests)}"
     motions = sorted({case.motion for case in cases if content.motions[case.motion].attrs.get("synthetic")})
     if motions:
         words.append(f"The ground motions are synthetic, not recorded: {', '.join(motions)}.")
     if tests:
         words.append(
-            f"The measured curves of {', '.join(tests)} are SYNTHETIC: runs of a solver of this program seen through "
-            "noisy markers, with an effect that the models may lack. They tell nothing about reality."
+            f"The measured curves{of} are SYNTHETIC: runs of this program seen through noisy markers, with an "
+            "effect that the models may lack. They tell nothing about reality."
         )
     return [Text(" ".join(words), strong=True)] if words else []

@@ -7,8 +7,8 @@ from blockshake.pages.scene.structure_picture import draw_blocks
 from blockshake.pages.wording import model_label
 
 _COLORS = (BLUE, ORANGE, GREEN, RED)
-_HEIGHT = 0.046  # m of paper
-_CURVES = 2.2  # width of the curves over that of the structures
+_HEIGHT = 0.042  # m of paper
+_IN_A_ROW, _CURVES = 4, 6.0  # structures, and width of the curves over that of one
 
 
 def plot_answer(structures, case, marker):
@@ -18,8 +18,8 @@ def plot_answer(structures, case, marker):
     of the samples and a band from the smallest to the largest at each time; the measured curve is dashed.
     """
     figure = new_figure(_HEIGHT)
-    across = min(len(structures), 2)
-    left, right = figure.subfigures(1, 2, width_ratios=[1.0, _CURVES])
+    across = min(len(structures), _IN_A_ROW)
+    left, right = figure.subfigures(1, 2, width_ratios=[across, _CURVES])
     drawn = left.subplots(-(-len(structures) // across), across, squeeze=False)
     for axes in drawn.flat:
         axes.set_axis_off()
@@ -32,7 +32,10 @@ def plot_answer(structures, case, marker):
             axes.plot(
                 at[0], at[1], "o", color=RED, markersize=3.5, markeredgecolor="white", markeredgewidth=0.5
             )
-        axes.set_aspect("equal")
+        axes.text(
+            0.5, 0.0, structure.file.name, transform=axes.transAxes, ha="center", va="top", fontsize=5.5
+        )
+        axes.set(aspect="equal", anchor="S")
         axes.autoscale_view()
     curves = right.subplots()
     for (model, one), color in zip(case.responses.items(), _COLORS, strict=False):
@@ -48,12 +51,13 @@ def plot_answer(structures, case, marker):
     if case.measured is not None and marker in case.measured["marker"].values:
         measured = case.measured["displacement"].sel(frame="slab", marker=marker)
         curves.plot(case.measured["time"], 1e3 * measured, label=case.curve_word, **MEASURED)
-    curves.set(xlabel="time [s]", ylabel="from its place [mm]", xlim=(0.0, case.settings["duration"]))
+    curves.set(xlabel="time [s]", ylabel="from place [mm]", xlim=(0.0, case.settings["duration"]))
     right.legend(
         *curves.get_legend_handles_labels(),
         loc="outside upper right",
         ncols=5,
         fontsize=6.0,
-        columnspacing=1.0,
+        handlelength=1.2,
+        columnspacing=0.8,
     )
     return figure

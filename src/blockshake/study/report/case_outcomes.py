@@ -10,11 +10,9 @@ from blockshake.measurement.motion.joints import find_joints, find_leaves
 from blockshake.pages.rows import face_markers
 from blockshake.simulation.rocking import plastic_shares
 from blockshake.statistics.intervals import SURE_FROM, share_interval
-from blockshake.study.ensembles.envelope import counted_samples
+from blockshake.study.ensembles.envelope import STILL, counted_samples, is_moving
 from blockshake.study.ensembles.outcomes import count_outcomes
 
-STILL = 1e-3  # m, below which a block counts as unmoved
-_LAST, _RESTLESS = 1.0, 0.05  # s of a window's end, and share of the peak by which a block still moves then
 _FARTHER = 1.25  # times, from which on medians without limits count as different
 
 
@@ -30,7 +28,7 @@ class Outcome(NamedTuple):
         The block that moves farthest, of those with markers.
     peak, least, most, end : float
         Its largest displacement along x from its place on the slab: median, smallest and largest of the samples, and
-        the median of what is left at the end [m], NaN where the block still moves in the last second.
+        the median of what is left at the end [m], NaN where the block still moves then (`is_moving`).
     margin : float
         Smallest median margin against overturning of any joint [1]; NaN where no joint has one.
     over : str
@@ -101,10 +99,6 @@ def _outcome(case, response):
     block, marker = list(blocks.items())[farthest]
     counted = counted_samples(response.samples)
     peaks = counted["peak"].sel(frame="slab", marker=marker)
-    peak, curve = float(at["peak"][farthest]), response.envelope["marker_displacement"]
-    late = curve.sel(frame="slab", quantile=0.5, marker=marker, axis="x")
-    late = late.sel(time=slice(float(late["time"][-1]) - _LAST, None))
-    rests = float(late.max() - late.min()) <= max(STILL, _RESTLESS * peak)
     margins = at["joint_margin"].dropna("joint")
     least = int(margins.argmin("joint")) if margins.size else None
     upper, every = find_joints(case.structure)[0][:, 1], at["joint_margin"].to_numpy()
@@ -116,10 +110,10 @@ def _outcome(case, response):
         failed=ended.failed,
         block=block,
         marker=marker,
-        peak=peak,
+        peak=float(at["peak"][farthest]),
         least=float(peaks.min()),
         most=float(peaks.max()),
-        end=abs(float(at["residual"][farthest])) if rests else np.nan,
+        end=np.nan if is_moving(response.envelope, marker) else abs(float(at["residual"][farthest])),
         margin=np.nan if least is None else float(margins[least]),
         over="" if least is None else str(margins["joint"].values[least]),
         leaves={

@@ -6,6 +6,7 @@ import numpy as np
 
 from blockshake.pages.rows import face_markers
 from blockshake.pages.wording import (
+    count_words,
     listed,
     model_label,
     number,
@@ -32,8 +33,8 @@ def next_steps(content, found):
     short = [name for name in found if (one := cases[name]).settings["duration"] < strong_until(content, one)]
     for name in short[:1]:
         steps.append(
-            f"Simulate {listed(short)} until the strong motion ends: {number(strong_until(content, cases[name]))} s "
-            "of the record (key duration)."
+            f"Simulate {_named(short, cases)} until the strong motion ends: "
+            f"{number(strong_until(content, cases[name]))} s of the record (key duration)."
         )
     moving = [
         name
@@ -42,23 +43,30 @@ def next_steps(content, found):
     ]
     if moving:
         steps.append(
-            f"Simulate {listed(moving)} for longer (key duration): blocks still move as the window ends."
+            f"Simulate {_named(moving, cases)} for longer (key duration): blocks still move as the window ends."
         )
     apart = [one for name in found for one in models_apart(cases[name], found[name])]
     impacts = shares_at_impacts(cases[max(apart).case], max(apart)[-2:]) if apart else None
     if impacts and abs(impacts[1][0] - impacts[1][1]) > ALIKE:
         near, far = map(model_label, max(apart)[-2:])
         steps.append(
-            f"Let a block rock freely and measure the spin that an impact keeps: {near} keeps {impacts[1][0]:.2f} and "
-            f"{far} {impacts[1][1]:.2f} at {impacts[0]}."
+            f"Let a block rock and measure the spin that impacts keep: {impacts[1][0]:.2f} by {near}, "
+            f"{impacts[1][1]:.2f} by {far} ({impacts[0]})."
         )
-    stand = [one for ended in found.values() for one in ended.values() if not one.collapsed]
+    # samples that differ by less than a marker tells are one run, and more of them say no more
+    stand = [
+        one.counted
+        for name, ended in found.items()
+        for one in ended.values()
+        if not one.collapsed and (one.counted == 1 or one.most - one.least > cases[name].marker_noise)
+    ]
     enough = next(size for size in count(1) if share_interval(0, size)[1] <= _RARE)
-    fewest = min((one.counted for one in stand), default=enough)
+    fewest = min(stand, default=enough)
     if fewest < enough:
+        now = f"now {100.0 * share_interval(0, fewest)[1]:.0f} % ({count_words(fewest, 'sample')})"
         steps.append(
-            f"Run {enough} samples a model (key ensemble.size): without a collapse among them its probability is below "
-            f"{100.0 * _RARE:.0f} %, with the fewest, {fewest}, below {100.0 * share_interval(0, fewest)[1]:.0f} %."
+            f"Run {enough} samples a model (key ensemble.size): if none collapses, the probability is below "
+            f"{100.0 * _RARE:.0f} %, {now}."
         )
     if not content.fragility and any(one.collapsed for ended in found.values() for one in ended.values()):
         steps.append("Let samples climb a ladder of intensities until each falls (key fragility).")
@@ -83,10 +91,14 @@ def next_steps(content, found):
             f"({name}, {model_label(model)})."
         )
     if real := [case.name for case in cases.values() if case.measured is None or case.synthetic]:
-        steps.append(
-            f"Compare with a measured test (key measured): {listed(real)} {'has' if len(real) == 1 else 'have'} none."
-        )
+        has = "has" if len(real) == 1 else "have"
+        steps.append(f"Compare with a measured test (key measured): {_named(real, cases)} {has} none.")
     return steps
+
+
+def _named(names, cases):
+    """Some cases by name, or that it is all of many."""
+    return f"all {len(cases)} cases" if len(names) == len(cases) > MOST else listed(names)
 
 
 def strong_until(content, case):
@@ -105,11 +117,11 @@ def unknown(content):
         )
     ]
     if any(names for _, names in named):
-        words = "; ".join(f"{listed(names)} ({word})" for word, names in named if names)
+        words = "; ".join(f"{_named(names, cases)} ({word})" for word, names in named if names)
         sentences.append(f"Whether any model is right about real blocks: {words}.")
     if short := [case.name for case in cases if case.settings["duration"] < strong_until(content, case)]:
         sentences.append(
-            f"Whether blocks fall after the window, which ends in the strong motion: {listed(short)}."
+            f"Whether blocks fall after the window, which ends in the strong motion: {_named(short, cases)}."
         )
     falling = _by_model(cases, lambda one: _ended(one).falling)
     if falling:
@@ -118,7 +130,7 @@ def unknown(content):
         )
     calibrated = chain.from_iterable((content.study.get("calibration") or {"cases": {}})["cases"].values())
     if assumed := sorted({case.name for case in cases} - set(calibrated)):
-        sentences.append(f"The mean friction, which is assumed and not calibrated: {listed(assumed)}.")
+        sentences.append(f"The mean friction, which is assumed and not calibrated: {_named(assumed, cases)}.")
     bare = {
         case.structure.file.name: f"{int((~case.structure.driven).sum()) - marked} of {case.structure.file.name}"
         for case in cases

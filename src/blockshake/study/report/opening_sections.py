@@ -1,11 +1,13 @@
 """Sections on the cases in figures, and on the inputs: structures, motions."""
 
+from itertools import product
+
 import numpy as np
 
 from blockshake.dynamics.load_motion import provenance
 from blockshake.pages.blocks import PAGE_WIDTH, Figure, Heading, Items, Section, Table, Text
 from blockshake.pages.drawing import svg_of
-from blockshake.pages.rows import face_markers
+from blockshake.pages.rows import top_markers
 from blockshake.pages.scene.structure_picture import plot_understood
 from blockshake.pages.wording import (
     CUBED,
@@ -20,7 +22,7 @@ from blockshake.pages.wording import (
     percent,
 )
 from blockshake.statistics.intervals import CONFIDENCE, samples_needed
-from blockshake.study.ensembles.outcomes import count_outcomes, numerical_figure, shortfall, unfinished
+from blockshake.study.ensembles.outcomes import count_outcomes, numerical_figure, unfinished
 from blockshake.study.report.motion_figure import plot_motions, plot_spectra
 
 _SHOWN = (0.5, 0.95)  # quantiles of peaks and rotations
@@ -75,14 +77,15 @@ def failures(content):
 
 
 def probability_table(content):
-    """Collapse, drift beyond the limit, peak and rotation of the top block, each with its 95 % interval."""
+    """Collapse, drift beyond the limit, peak and rotation of the top block of every leaf, with 95 % intervals."""
     needed = ", ".join(f"{100 * one:.0f} % needs {samples_needed(one)}" for one in _SHOWN)
     rows = []
     for case in content.cases.values():
-        body, marker = next(iter(face_markers(case.structure).items()))
-        for model, response in case.responses.items():
+        for (body, marker), (model, response) in product(
+            top_markers(case.structure).items(), case.responses.items()
+        ):
             one = response.envelope
-            counted, failed, *_ = shortfall(one)
+            counted, failed = one.attrs["counted"], one.attrs["samples"] - one.attrs["counted"]
             top = one.sel(marker=marker, body=body)
             rows.append((
                 f"{case.name}, {marker}", model_label(model),
@@ -95,7 +98,8 @@ def probability_table(content):
     shown = " and ".join(f"{100 * one:.0f} %" for one in _SHOWN)
     quantiles = [f"{100 * one:.0f} %" for one in _SHOWN]
     return Table(
-        "Top block, at its marker: probability of collapse, and of a displacement relative to the slab of more than "
+        "Top block of every leaf, at its marker: probability of collapse, and of a displacement relative to the slab "
+        "of more than "
         f"{number(1e3 * limit.attrs['largest_drift'])} mm, with Clopper-Pearson limits; quantiles {shown} of peak "
         "displacement [mm] and peak rotation [mrad] over the n samples that did not fail, with limits by order "
         f"statistics. {MISSING.capitalize()}: of a quantile for which n is too small to bear limits ({needed}). All "

@@ -30,7 +30,7 @@ def responses(content):
             "the samples; red: the smallest and the largest value at each time. Two bounds of n samples hold one "
             "further run of the same model at one instant with probability (n - 1) / (n + 1). For a whole record no "
             "probability is known; therefore every coverage stands beside its leave-one-out reference."
-        ),
+        )
     ]
     for case in content.cases.values():
         blocks += _response(case)
