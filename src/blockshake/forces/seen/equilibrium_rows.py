@@ -54,8 +54,7 @@ class ContactForces:
     ----------
     force, moment : float64 arrays, shape (n_times, n_faces, 3)
         On the upper body, about the middle of the face, along its axes [N, N m]: exact where the faces are a tree, of
-        the least norm elsewhere, where the normal force alone is of use. NaN where motions are unknown that it follows
-        from.
+        the least norm elsewhere. NaN where motions are unknown that it follows from.
     moment_error : float64 array, shape (n_times, n_faces)
         Standard deviation of the moment about the second tangent [N m].
     """
@@ -182,8 +181,8 @@ def bearing_points(frames, states):
     return frames.middle + np.einsum("tfk,tfik->tfi", states.edge * half, frames.axes[..., :2])
 
 
-def equilibrium_rows(frames, states, motion, required, free):
-    """`EquilibriumRows` of a test at instants 20 ms apart; ``free``: int array (n_free,).
+def equilibrium_rows(frames, states, motion, required, free, known=True):
+    """`EquilibriumRows` of a test 20 ms apart, where normal forces are ``known`` (n_times,); ``free`` (n_free,) int.
 
     Notes
     -----
@@ -196,7 +195,7 @@ def equilibrium_rows(frames, states, motion, required, free):
     n_bodies = frames.position.shape[1]
     step = float(np.median(np.diff(motion.time)))
     wrench, information, read = _of_read_bodies(required, free)
-    chosen = np.flatnonzero(read.any(axis=1))
+    chosen = np.flatnonzero(read.any(axis=1) & known)
     chosen = chosen[chosen % max(1, round(_EVERY / step)) == 0]
     carried = np.concatenate(
         [columns[chosen][:, free] for columns in _all_carried(frames, states)], axis=-1

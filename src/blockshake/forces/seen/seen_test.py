@@ -114,14 +114,18 @@ def see_test(name, readings, structure, sensors):
     frames, free = face_frames(structure, faces, motion), np.flatnonzero(~structure.driven)
     forces = contact_forces(frames, required, free)
     states = face_states(structure, faces, motion, joints, still)
+    known = True
     if len(faces) == len(free):
         states = with_resultants(states, frames, forces, joints)
     else:
         forces = contact_forces(frames, required, free, states)
+        known = np.isfinite(forces.force).all(
+            axis=(1, 2)
+        )  # without a body, errors of a loop's joints are not known
     joints = replace(
         joints, **{name: np.nan_to_num(getattr(joints, name)) for name in ("rotation", "roll", "slip_rate")}
     )
-    rows = equilibrium_rows(frames, states, motion, required, free)
+    rows = equilibrium_rows(frames, states, motion, required, free, known)
     return SeenTest(name, structure, readings, motion, still, joints, required, frames, states, forces, rows)
 
 

@@ -6,9 +6,7 @@ frame, per unit of its amplitude. It is zero where a motion is not known: no row
 
 import numpy as np
 
-_WIDEST = (
-    2.0 / 3.0
-)  # of the half width, by which the resultant of an elastic face lies within the edge at most
+_WIDEST = 2.0 / 3.0  # of the half width: an elastic face bears at most so far within its edge
 
 
 def edge_inward(seen, face, tangent=0, edge=0):
