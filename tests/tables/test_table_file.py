@@ -172,6 +172,12 @@ def test_clocks_of_a_workbook_are_seconds(tmp_path):
         read_table(path, TableLayout()).times("t")
 
 
+def test_a_time_beyond_all_numbers_is_refused(tmp_path):
+    (tmp_path / "t.csv").write_text("t,a\n0,1\n1e400,1\n")
+    with pytest.raises(InputError, match="column 't': expected numbers of usual size"):
+        read_table(tmp_path / "t.csv", TableLayout()).times("t")
+
+
 def test_minutes_and_seconds_alone_are_no_clock(tmp_path):
     (tmp_path / "t.csv").write_text("t;a\n03:21.25;1\n")
     with pytest.raises(

@@ -77,9 +77,12 @@ class CellTable(NamedTuple):
             wrong = f"'{cells[coded]}' looks like a code for a missing one, which an empty cell says"
             raise InputError(self.source, f"line {self.lines[coded]}, {name}", f"expected a reading; {wrong}")
         try:
-            return np.array([np.nan if number is None else float(number * size) for number in numbers])
+            values = np.array([np.nan if number is None else float(number * size) for number in numbers])
         except ArithmeticError:
-            raise InputError(self.source, f"column '{name}'", "expected numbers of usual size") from None
+            values = np.array([np.inf])
+        if np.isinf(values).any():
+            raise InputError(self.source, f"column '{name}'", "expected numbers of usual size")
+        return values
 
     def times(self, name, size=Decimal(1)):
         """Times of a column, float64 (n_rows,) [s], as of `column`; clocks of the day count from a midnight.
@@ -121,8 +124,7 @@ class CellTable(NamedTuple):
         stated += [known_unit(note) for note in noted if note != "min"]  # of rows of min, max and mean
         for unit in filter(None, stated):
             if unit != (kind, abs(size)):
-                given, found = UNIT_NAMES[kind, abs(size)], UNIT_NAMES[unit]
-                wrong = f"expected {given}; the header says {found}"
+                wrong = f"expected {UNIT_NAMES[kind, abs(size)]}; the header says {UNIT_NAMES[unit]}"
                 raise InputError(self.source, f"column '{name}'", wrong)
 
     def fault(self, line, name, wrong, key="data"):

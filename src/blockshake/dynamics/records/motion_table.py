@@ -48,8 +48,8 @@ def load_motion_table(source, layout, time, columns, unit, time_unit, baseline):
     table = read_table(source, layout)
     where = table.source
     read = {key: _finite(table, name, table.column(name, size, kind)) for key, name in columns.items()}
-    at = table.times(time, unit_size("time", time_unit, Argument("time_unit"), time_unit))
-    at = _finite(table, time, at)
+    times = table.times(time, unit_size("time", time_unit, Argument("time_unit"), time_unit))
+    at = _finite(table, time, times)
     check_times(at, table.lines, where, time)
     if len(at) < 2:
         raise InputError(where, "", f"expected at least two rows, found {len(at)}")

@@ -152,10 +152,8 @@ def _rotations(quaternion, path, name):
     length = np.linalg.norm(quaternion[read], axis=1)
     if (np.abs(length - 1.0) > _LENGTH_ERROR).any():
         row = int(np.flatnonzero(read)[np.abs(length - 1.0).argmax()])
-        raise InputError(
-            path, f"{name}.q", f"expected unit quaternions, not of length {np.linalg.norm(quaternion[row]):.3g} "
-            f"in row {row + 1}",
-        )  # fmt: skip
+        off = f"{np.linalg.norm(quaternion[row]):.3g} in row {row + 1}"
+        raise InputError(path, f"{name}.q", f"expected unit quaternions, not of length {off}")
     rotation[read] = Rotation.from_quat(quaternion[read], scalar_first=True).as_matrix()
     return rotation
 
