@@ -5,8 +5,7 @@ import numpy as np
 from blockshake.geometry.surface_nodes import box_nodes
 
 FLAT = 0.76  # m, width of the flats of the columns' blocks
-# m, of the pivots of all shapes: nearer to where the edges of two flats meet, decision 13 takes the row for outside
-INSET = 0.003 * FLAT
+INSET = 0.003 * FLAT  # m, of the pivots of all shapes
 
 
 def rail_nodes(size, chamfer, hollow, spacing, _):

@@ -28,11 +28,11 @@ SHIFTS = [
 ]
 
 
-def wrench(structure, position, orientation):
+def wrench(structure, position, orientation, **parameters):
     """Force and moment of the contact on the second body, without gravity [N, N m]."""
     bodies, state, _ = assemble_bodies(structure)
     bodies = bodies._replace(gravity=np.zeros(3))
-    parameters = LsDemParameters()
+    parameters = LsDemParameters(**parameters)
     surfaces, interfaces = (make(structure, parameters) for make in (assemble_surfaces, assemble_interfaces))
     position, orientation = (np.array([state_of[0], own]) for state_of, own in (
         (state.position, position), (state.orientation, orientation),
@@ -97,6 +97,23 @@ def test_so_have_two_blocks_anywhere_with_enough_in_common(make_structure):
     assert missed.max() < 0.1
     assert np.median(missed) < 0.002
     assert (missed < 0.02).mean() > 0.95
+
+
+@pytest.mark.parametrize("inset", [0.003, 0.001, 0.0005])
+def test_edges_that_lie_flush_bear_however_near_the_nodes_are(inset, make_structure):
+    """A cube that leans over the edge of a narrower block, with that edge below its own."""
+    structure = make_structure(
+        [
+            {"name": "lower", "shape": "block", "position": [0.0, 0.0, 0.0]},
+            {"name": "upper", "shape": "cube", "position": [0.0, 0.0, 2.0]},
+        ],
+        slab=False,
+    )
+    lean = 2e-4  # the second row of nodes is lifted by more than the edge sinks in
+    position = [0.38 - 0.5 + 0.5 * lean, 0.0, 1.3 + 0.5 * lean - DEPTH]
+    force, moment, k_n = wrench(structure, position, [1.0, 0.0, 0.5 * lean, 0.0], perimeter_inset=inset)
+    assert force[2] > 0.01 * k_n * 0.76 * DEPTH
+    assert 0.496 < -moment[1] / force[2] < 0.5  # m, from the cube's middle to its edge
 
 
 FLATS, HEIGHTS = {"block": (0.76, 2.36), "cube": (1.0, 1.0)}, {"block": 1.6, "cube": 1.0}  # m

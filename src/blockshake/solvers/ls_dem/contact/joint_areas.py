@@ -9,8 +9,9 @@ from blockshake.solvers.ls_dem.contact.packets import AREA, DAMPING_WEIGHT, LANE
 from blockshake.solvers.ls_dem.contact.relative_pose import facing_of
 
 _ON_FACE = 1e-9  # m
-# A node counts where it stays inside the other's flat wherever the raster's place stands for, in steps of the raster.
-_MARGIN = 1.5
+# A node counts where it stays inside the other's flat wherever the raster's place stands for, in steps of the raster;
+# at most this share of its distance from the edge of its own flat, which may lie flush with the other's.
+_MARGIN, _FLUSH = 1.5, 0.75
 # Share of its area that another node of a face keeps, so that its shear spring slips along with the joint.
 _IDLE = 1e-6
 _LEAST_PIVOT = 1e-6  # of moments over a length of the overlap's size, where 1 is usual
@@ -172,8 +173,9 @@ def _place(surfaces, a, b, facing, second, node):
     c, s = facing.cosine, facing.sine
     other = surfaces.shape[a if second else b]
     other_axis = facing.axis_a if second else facing.axis_b
-    limit_p = surfaces.half[other, (other_axis + 1) % 3] - surfaces.chamfer[other] - _MARGIN * facing.step
-    limit_q = surfaces.half[other, (other_axis + 2) % 3] - surfaces.chamfer[other] - _MARGIN * facing.step
+    margin = min(_MARGIN * facing.step, _FLUSH * min(wide_p - abs(x), wide_q - abs(y)))
+    limit_p, limit_q = _half_edges(surfaces, other, other_axis)
+    limit_p, limit_q = limit_p - margin, limit_q - margin
     if second:
         u, v = facing.u + c * x - mirror * s * y, facing.v + s * x + mirror * c * y
         counts = abs(u) <= limit_p and abs(v) <= limit_q
