@@ -1,12 +1,11 @@
 """Time of one evaluation of all contact forces of a stack at rest, by node and by pair."""
 
-import numba
 import numpy as np
 from measuring import process_seconds, spread
 
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import load_structure
-from blockshake.jit import kernel
+from blockshake.jit import loop_kernel
 from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_candidates
 from blockshake.solvers.ls_dem.contact.contact_forces import contact_forces_into, no_loads
 from blockshake.solvers.ls_dem.contact.relative_pose import Poses
@@ -15,9 +14,6 @@ from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.ls_dem.progress import no_joints
 from blockshake.solvers.ls_dem.surfaces import assemble_surfaces
-
-# compiled
-contact_forces_into = kernel(contact_forces_into)
 
 STRUCTURE = "configuration-1"
 TIME_STEP = 1e-5  # s
@@ -29,7 +25,7 @@ LEVEL_SETS = {"exact distance": {}, "grid": {"level_set": "grid"}}
 TARGET_NS = {"exact distance": 6.0, "grid": 15.0}
 
 
-@numba.njit(error_model="numpy")
+@loop_kernel
 def _evaluate(times, candidates, surfaces, interfaces, poses, dt, loads):
     for _ in range(times):
         contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads)
