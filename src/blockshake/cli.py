@@ -117,6 +117,7 @@ def _parser():
         command.set_defaults(run=run)
         return command
 
+    steps = ", ".join(f"{model.time_step:g} for {name}" for name, model in MODELS.items())
     command = add("simulate", _simulate, "one structure under one motion, to a run file")
     command.add_argument("--structure", required=True, metavar="NAME|FILE")
     command.add_argument("--motion", required=True, metavar="NAME|FILE")
@@ -127,7 +128,7 @@ def _parser():
     )
     command.add_argument("--model", required=True, help=" or ".join(MODELS))
     _add_settings(command)
-    command.add_argument("--time-step", type=float, metavar="S", help=f"default {_default_steps()}")
+    command.add_argument("--time-step", type=float, metavar="S", help=f"default {steps}")
     command.add_argument("--output-rate", type=float, metavar="HZ", help="default: the optical system's")
     command.add_argument("--output", required=True, metavar="RUN.nc")
 
@@ -246,10 +247,6 @@ def _parser():
         "--structure", metavar="NAME|FILE", help="whose names to list (default configuration-1)"
     )
     return parser
-
-
-def _default_steps():
-    return ", ".join(f"{model.time_step:g} for {name}" for name, model in MODELS.items())
 
 
 def _add_settings(command):

@@ -22,6 +22,7 @@ from blockshake.measurement.campaigns.commanded_motion import commanded_motion
 from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.own_files.import_campaign import import_campaign
 from blockshake.own_files.import_map import ImportMap, load_map
+from blockshake.pages.wording import count_words
 from blockshake.study.config import StudyConfig, load_config
 from blockshake.study.config_checks import typical_structure
 from blockshake.study.ensembles.case_input import measured_input
@@ -115,13 +116,12 @@ def _study_line(source):
     for model in config.models:
         counts = sorted({config.samples(model, case.name) for case in config.cases})
         models.append(f"{model} ({' to '.join(map(str, dict.fromkeys((counts[0], counts[-1]))))} samples)")
-    count = f"{len(config.cases)} case{'s' * (len(config.cases) != 1)}"
     loaded = {}
     motions = {
         case.name: list(DrawnMotions.of(case.model_dump(), loaded).strongest()) for case in config.cases
     }
     records = [f"  {name}: {provenance(motion.attributes)}" for (name, _), motion in loaded.items()]
-    lines = [f"a study of {count} by {', '.join(models)}", *records]
+    lines = [f"a study of {count_words(len(config.cases), 'case')} by {', '.join(models)}", *records]
     return _with_remarks(lines, _study_remarks(config, motions))
 
 

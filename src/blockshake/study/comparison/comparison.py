@@ -123,10 +123,6 @@ def compare_models(ensembles, twins, measured):
     )
     result = result.assign_coords(model=models, other=models)
     describe(result, _DESCRIBED)
-    for name in result:
-        if str(name).endswith("_interval"):
-            of = result[str(name).removesuffix("_interval")].attrs
-            result[name].attrs = {"long_name": f"limits of the {of['long_name']}", "units": of["units"]}
     result.attrs = {
         "title": "models of one case held against each other",
         "structure": structure,
@@ -228,7 +224,8 @@ def _pairs(counted, limit, seed):
             parting_time(time, curves[model][a], curves[other][b], limit)
             for a, b in zip(at_model, at_other, strict=True)
         ]
-        values["parting_time"] = _upper_median(parted)
+        # some may be infinite; of two middle ones the later
+        values["parting_time"] = sorted(parted)[len(parted) // 2] if parted else np.nan
         for cell in ((row, column), (column, row)):
             common[cell] = len(shared)
             interval[:, *cell] = quantile_interval(of_both, _MIDDLE)[:, 0]
@@ -251,11 +248,6 @@ def parting_time(time, curve, other, limit):
     beyond |= np.isfinite(curve) != np.isfinite(other)
     parted = beyond.any(axis=1)
     return float(time[np.argmax(parted)]) if parted.any() else np.inf
-
-
-def _upper_median(times):
-    """Median of times some of which may be infinite; of two middle ones the later."""
-    return sorted(times)[len(times) // 2] if times else np.nan
 
 
 def _numerics(counted, twins, limit):

@@ -208,10 +208,12 @@ def describe(dataset, described):
     ----------
     dataset : xarray.Dataset
     described : dict of str to (str, str)
-        Long name and unit, by variable.
+        Long name and unit, by variable. ``NAME_interval``, where it is there, has the limits of ``NAME``.
     """
     for name, (long_name, units) in described.items():
         dataset[name].attrs = {"long_name": long_name, "units": units}
+        if f"{name}_interval" in dataset:
+            dataset[f"{name}_interval"].attrs = {"long_name": f"limits of the {long_name}", "units": units}
 
 
 def measured_curves(test, slab_marker, duration):

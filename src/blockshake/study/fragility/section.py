@@ -9,6 +9,7 @@ from blockshake.pages.wording import (
     SQUARED,
     count_words,
     given,
+    limited,
     millimetres,
     model_label,
     number,
@@ -95,16 +96,18 @@ def words(content, name):
             f"{who}: all capacities lie between {given(low)} and {given(high)} times the motion ({number(low * unit)} "
             f"and {number(high * unit)} {measure}). The levels are too far apart to tell more.{less}"
         )
-    if float(result["dispersion"]) < _smallest_known(result):
+    # of a uniform spread over one step of the scales
+    smallest_known = float(result["scale"][1] - result["scale"][0]) / median / np.sqrt(12.0)
+    if float(result["dispersion"]) < smallest_known:
         less += (
             " The capacities differ by less than the levels are apart: the dispersion, and with it the factor that "
             f"{percent(SAFE)} % are below, is bounded by the level below alone."
         )
     return (
-        f"{who}: half of the capacities are below {_limited(result, 'median')} times the motion "
-        f"({number(median * unit)} {measure}), {percent(SAFE)} % below {_limited(result, 'safe_scale')} "
+        f"{who}: half of the capacities are below {limited(result, 'median')} times the motion "
+        f"({number(median * unit)} {measure}), {percent(SAFE)} % below {limited(result, 'safe_scale')} "
         f"({number(float(result['safe_scale']) * unit)} {measure}); limits of {quantile_percent(CONFIDENCE)} in "
-        f"brackets. Dispersion: {_limited(result, 'dispersion')}.{less}"
+        f"brackets. Dispersion: {limited(result, 'dispersion')}.{less}"
     )
 
 
@@ -115,18 +118,6 @@ def _unit(content, case):
         return content.motions[case.motion].attrs["peak_acceleration"], f"m/s{SQUARED}"
     name, unit = measure_words(clouds[0])
     return case.settings["intensity"]["levels"][0], f"{unit}, {name}"
-
-
-def _smallest_known(result):
-    """Dispersion of capacities below which a step of the scales hides it: of a uniform spread over one step [1]."""
-    return float(result["scale"][1] - result["scale"][0]) / float(result["median"]) / np.sqrt(12.0)
-
-
-def _limited(result, name):
-    limits = result[f"{name}_interval"].sel(bound=["lower", "upper"])
-    if not np.isfinite(limits).all():
-        return "a factor of which the samples bear no limits"
-    return f"{number(result[name])} [{', '.join(map(number, limits))}]"
 
 
 def _table(content):

@@ -9,6 +9,15 @@ from blockshake.pages.wording import millimetres, number, parameter_label, perce
 
 SHARED = 0.05  # r squared of two variables beyond which they are said to share their indices
 _TOLD = 3  # pairs of such variables
+_WORDS = {
+    "first_order": (
+        "Shown to explain some of that by itself:", "No variable is shown to explain any of that by itself", "share",
+    ),
+    "rank_correlation": (
+        "By partial rank correlation the peak follows", "No variable is shown to steer the peak",
+        "partial rank correlation",
+    ),
+}  # fmt: skip
 
 
 class Influence(NamedTuple):
@@ -122,9 +131,8 @@ def sentence(result, body, marker, noise):
             f"the samples of {body} differ by {number(1e3 * history['spread'], 2)} mm {spread}, less than the noise of "
             "a marker: the envelope is a line and there is nothing to explain."
         )
-    words = (
-        f"the samples of {body} differ by {millimetres(history['spread'])} mm {spread}. {_explained(history)}"
-    )
+    thick = f"the samples of {body} differ by {millimetres(history['spread'])} mm {spread}."
+    words = f"{thick} {_found(history, 'first_order')}"
     peak = result.sel(quantity="peak", marker=marker)
     if not is_known(peak, "rank_correlation"):
         return (
@@ -133,31 +141,18 @@ def sentence(result, body, marker, noise):
     explained = float(peak["explained"])
     share = f"{percent(explained)} %" if explained > 0.0 else "nothing"
     return (
-        f"{words} {_steered(peak)} All variables together explain {share} of the ranks of the peak "
+        f"{words} {_found(peak, 'rank_correlation')} All variables together explain {share} of the ranks of the peak "
         f"(adjusted R\N{SUPERSCRIPT TWO} {explained:.2f})."
     )
 
 
-def _explained(history):
-    answer = influences(history, "first_order")
-    named = ", then ".join(map(influence_words, answer.beyond_chance))
-    if named:
-        return f"Shown to explain some of that by itself: {named}; level of chance {answer.chance:.2f}."
-    return (
-        "No variable is shown to explain any of that by itself: the largest share, "
-        f"{influence_words(answer.ranked[0])}, is within the level of chance, {answer.chance:.2f}."
-    )
-
-
-def _steered(peak):
-    answer = influences(peak, "rank_correlation")
-    named = ", then ".join(map(influence_words, answer.beyond_chance))
-    if named:
-        return f"The peak follows {named} (partial rank correlation; level of chance {answer.chance:.2f})."
-    return (
-        "No variable is shown to steer the peak: the largest partial rank correlation, "
-        f"{influence_words(answer.ranked[0])}, is within the level of chance, {answer.chance:.2f}."
-    )
+def _found(result, measure):
+    """Variables whose measure is beyond chance, or the largest measure where there is none, in a sentence."""
+    answer, (shown, hidden, noun) = influences(result, measure), _WORDS[measure]
+    if named := ", then ".join(map(influence_words, answer.beyond_chance)):
+        return f"{shown} {named}; level of chance {answer.chance:.2f}."
+    largest = influence_words(answer.ranked[0])
+    return f"{hidden}: the largest {noun}, {largest}, is within the level of chance, {answer.chance:.2f}."
 
 
 def influence_words(one):

@@ -201,9 +201,7 @@ def _described(result, ensemble, counted, seed):
     describe(result, _DESCRIBED)
     for name in _MEASURES:
         of = result[name].attrs
-        result[f"{name}_interval"].attrs = {
-            "long_name": f"bootstrap interval of the {of['long_name']}", "units": "1", "confidence": CONFIDENCE,
-        }  # fmt: skip
+        result[f"{name}_interval"].attrs["confidence"] = CONFIDENCE
         result[f"{name}_chance"].attrs = {
             "long_name": f"what the largest absolute {of['long_name']} reaches without any effect", "units": "1",
             "confidence": CONFIDENCE,

@@ -14,6 +14,7 @@ STEP_VELOCITY = 1e-3  # m/s; a larger step would open or slip the joints and mea
 AXES = {"normal": ("z", 2), "shear": ("x", 0)}
 _TIME_STEP = model_of("ls-dem").time_step  # s; shorter where a wave passes a block in fewer steps than these
 _STEPS_A_BLOCK = 20
+_PASSAGES = 3.0  # of the tower at the long-wave speed of the chain, in a test
 
 
 class StepTest(NamedTuple):
@@ -35,7 +36,7 @@ class StepTest(NamedTuple):
     height: float
 
 
-def send_step(structure, parameters, direction, passages=3.0, rotations_blocked=True):
+def send_step(structure, parameters, direction):
     """`StepTest` of the blocks of a tower whose base moves with the step's velocity from the start.
 
     Parameters
@@ -43,11 +44,8 @@ def send_step(structure, parameters, direction, passages=3.0, rotations_blocked=
     structure : Structure
     parameters : LsDemParameters
     direction : str
-        ``normal`` or ``shear``.
-    passages : float
-        Length of the test, in passages of the tower at the chain's long-wave speed [1].
-    rotations_blocked : bool
-        Of the blocks under a horizontal step; a vertical one turns none.
+        ``normal`` or ``shear``, whose horizontal step finds the rotations of the blocks blocked; a vertical one turns
+        none.
 
     Raises
     ------
@@ -60,13 +58,14 @@ def send_step(structure, parameters, direction, passages=3.0, rotations_blocked=
     pitch = height / (len(blocks) - 1)
     stiffness = parameters.normal_stiffness if direction == "normal" else parameters.shear_stiffness
     density = structure.mass[blocks[0]] / structure.solid(blocks[0]).properties.volume
-    duration = passages * (height + pitch) / np.sqrt(stiffness * pitch / density)
+    duration = _PASSAGES * (height + pitch) / np.sqrt(stiffness * pitch / density)
     young = structure.file.materials[structure.file.bodies[blocks[0]].material].youngs_modulus
     time_step = min(_TIME_STEP, pitch * np.sqrt(density / young) / _STEPS_A_BLOCK)
     times = np.arange(0.0, duration, time_step)
     step = ground_motion("velocity step", [0.0, 2.0 * duration], {channel: [STEP_VELOCITY] * 2}, "velocity")
-    blocked = direction == "shear" and rotations_blocked
-    run = simulate_ls_dem(structure, step, parameters, times, time_step, rotations_blocked=blocked)
+    run = simulate_ls_dem(
+        structure, step, parameters, times, time_step, rotations_blocked=direction == "shear"
+    )
     if run.status != Status.COMPLETED:
         raise no_passage(structure, direction, f"; {run.reason}")
     moved = run.position[:, blocks, axis] - run.position[0, blocks, axis]
