@@ -12,7 +12,7 @@ from pathlib import Path
 from blockshake import __version__
 from blockshake.errors import BAD_INPUT, INTERRUPTED, Argument, InputError
 from blockshake.files import check_output, parse_yaml, write_json
-from blockshake.own_files.commands import add_baseline, add_data_commands
+from blockshake.own_files.commands import add_baseline, add_data_commands, pairs_of
 from blockshake.own_files.run_workflow import WorkflowError
 from blockshake.simulation.models import MODELS
 
@@ -264,15 +264,8 @@ def _add_run(command):
 
 
 def _settings(options):
-    settings = {}
-    for setting in options.settings:
-        key, equals, value = setting.partition("=")
-        if not equals or not key:
-            raise InputError("--set", setting, "expected KEY=VALUE")
-        if key in settings:
-            raise InputError("--set", setting, f"expected {key} once")
-        settings[key] = parse_yaml(value, f"--set {key}")
-    return settings
+    given = pairs_of(options.settings, "--set", "KEY=VALUE")
+    return {key: parse_yaml(value, f"--set {key}") for key, value in given.items()}
 
 
 def _simulate(options):

@@ -167,6 +167,19 @@ def relative_to_slab(displacement, slab_marker):
     return relative
 
 
+def moving_markers(ensemble):
+    """Markers of an ensemble but that of the slab, a list of str."""
+    slab = ensemble.attrs["slab_marker"]
+    return [str(name) for name in ensemble["marker"].values if name != slab]
+
+
+def block_curves(ensemble):
+    """Displacement of `moving_markers` along x relative to the slab, float64 (n_samples, n_times, n_markers) [m]."""
+    moved = ensemble["marker_displacement"].sel(axis="x", drop=True)
+    along = relative_to_slab(moved, ensemble.attrs["slab_marker"])
+    return along.sel(marker=moving_markers(ensemble)).transpose(..., "time", "marker").to_numpy()
+
+
 def in_frames(displacement, slab_marker):
     """Displacement with a first dimension ``frame``: ``inertial`` as given, ``slab`` relative to it."""
     frames = [displacement, relative_to_slab(displacement, slab_marker)]
