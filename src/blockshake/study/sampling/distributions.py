@@ -67,8 +67,7 @@ class Lognormal(_ByQuantiles):
 
     def density(self, value):
         """Probability density at positive values, in one over the variable's unit."""
-        score = np.log(np.asarray(value) / self.median) / self.log_deviation
-        return np.exp(-0.5 * score**2) / (np.sqrt(2.0 * np.pi) * self.log_deviation * np.asarray(value))
+        return scipy.stats.lognorm.pdf(value, self.log_deviation, scale=self.median)
 
 
 class Tabulated(_ByQuantiles):

@@ -42,18 +42,6 @@ class Influence(NamedTuple):
     beyond_chance: bool
 
 
-class Influences(NamedTuple):
-    """Variables from the strongest down, and the level of chance [1]."""
-
-    ranked: tuple
-    chance: float
-
-    @property
-    def beyond_chance(self):
-        """Variables that stand out, from the strongest down."""
-        return tuple(one for one in self.ranked if one.beyond_chance)
-
-
 def differs(result, noise):
     """Whether samples of a `sensitivity` differ by at least a marker's noise [m], a standard deviation.
 
@@ -68,7 +56,7 @@ def is_known(result, measure):
 
 
 def influences(result, measure):
-    """`Influences`: variables of a `sensitivity` ranked by a measure, at one marker and for one quantity that is known.
+    """List of `Influence` of a `sensitivity`, the strongest first, at one marker and for one quantity that is known.
 
     ``first_order``, ranked by the share, which is noise where negative; or ``rank_correlation``, by its magnitude.
     """
@@ -77,14 +65,13 @@ def influences(result, measure):
     lower, upper = (result[f"{measure}_interval"].sel(bound=one).to_numpy() for one in ("lower", "upper"))
     order = np.argsort(-strength, kind="stable")
     names, controls = result["parameter"].values, result["control"].values
-    ranked = (
+    return [
         Influence(
             str(names[index]), bool(controls[index]), *map(float, (values[index], lower[index], upper[index])),
             bool(strength[index] > chance),
         )
         for index in order
-    )  # fmt: skip
-    return Influences(tuple(ranked), chance)
+    ]  # fmt: skip
 
 
 def shared_words(result):
@@ -148,11 +135,11 @@ def sentence(result, body, marker, noise):
 
 def _found(result, measure):
     """Variables whose measure is beyond chance, or the largest measure where there is none, in a sentence."""
-    answer, (shown, hidden, noun) = influences(result, measure), _WORDS[measure]
-    if named := ", then ".join(map(influence_words, answer.beyond_chance)):
-        return f"{shown} {named}; level of chance {answer.chance:.2f}."
-    largest = influence_words(answer.ranked[0])
-    return f"{hidden}: the largest {noun}, {largest}, is within the level of chance, {answer.chance:.2f}."
+    ranked, (shown, hidden, noun) = influences(result, measure), _WORDS[measure]
+    chance = f"{float(result[f'{measure}_chance']):.2f}"
+    if named := ", then ".join(influence_words(one) for one in ranked if one.beyond_chance):
+        return f"{shown} {named}; level of chance {chance}."
+    return f"{hidden}: the largest {noun}, {influence_words(ranked[0])}, is within the level of chance, {chance}."
 
 
 def influence_words(one):

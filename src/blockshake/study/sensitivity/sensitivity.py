@@ -5,7 +5,6 @@ import scipy
 import xarray as xr
 
 from blockshake.dynamics.system import Status
-from blockshake.errors import InputError
 from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.statistics.intervals import CONFIDENCE
@@ -87,11 +86,6 @@ def sensitivity(ensemble, variables, controls=()):
         relative to the slab's along x: ``history``, the displacement at all times together, and ``peak``. A history
         has no rank correlation.
 
-    Raises
-    ------
-    InputError
-        A variable that the ensemble does not hold.
-
     Notes
     -----
     Samples that failed are left out. One that collapsed or still falls ranks first: its peak is at least the
@@ -99,10 +93,6 @@ def sensitivity(ensemble, variables, controls=()):
     Variables are taken as independent; of correlated ones the index holds what they carry of each other. The share of
     a history weighs each time by the variance there: it says what the envelope's thickness over time comes from.
     """
-    names = [str(name) for name in ensemble["parameter"].values]
-    for variable in variables:
-        if variable not in names:
-            raise InputError("sensitivity", variable, "expected a parameter of the ensemble")
     counted = counted_samples(ensemble)
     inputs = counted["parameter_value"].sel(parameter=variables).transpose("sample", "parameter").to_numpy()
     seed = int(

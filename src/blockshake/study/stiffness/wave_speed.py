@@ -60,7 +60,8 @@ def measure_wave_speed(structure, parameters, direction):
 
     Returns
     -------
-    step : StepTest
+    time, displacement, velocity
+        Of `send_step`.
     arrival : float64 array, shape (n_blocks,)
         At the blocks from the lowest up [s].
     wave_speed : float
@@ -71,11 +72,11 @@ def measure_wave_speed(structure, parameters, direction):
     InputError
         The structure is not a single tower, or a block never reached half the step's velocity.
     """
-    step = send_step(structure, parameters, direction)
-    arrival = np.array([crossing(step.time, history, 0.5 * STEP_VELOCITY) for history in step.velocity.T])
+    time, displacement, velocity, height = send_step(structure, parameters, direction)
+    arrival = np.array([crossing(time, history, 0.5 * STEP_VELOCITY) for history in velocity.T])
     if np.isnan(arrival).any():
         raise no_passage(structure, direction)
-    return step, arrival, float(step.height / (arrival[-1] - arrival[0]))
+    return time, displacement, velocity, arrival, float(height / (arrival[-1] - arrival[0]))
 
 
 class Stiffness(TypedDict):
@@ -126,7 +127,7 @@ def calibrate_stiffness(structure: StructureSource, parameters: Mapping[str, Any
             numerical = LsDemParameters(
                 normal_stiffness=stiffness["normal"], shear_stiffness=stiffness["shear"]
             )
-            reached[direction] = measure_wave_speed(tower, numerical, direction)[2]
+            reached[direction] = measure_wave_speed(tower, numerical, direction)[-1]
             ratio = targets[direction] / reached[direction]
             if abs(ratio - 1.0) < _MATCHED:
                 break
@@ -194,18 +195,18 @@ def wave_tests(structure):
     blocks = [tower.body_names[body] for body in tower_blocks(tower)]
     tests = []
     for direction in AXES:
-        step, arrival, wave_speed = measure_wave_speed(tower, numerical, direction)
+        time, displacement, velocity, arrival, speed = measure_wave_speed(tower, numerical, direction)
         tests.append(
             xr.Dataset(
                 {
-                    "displacement": (("time", "block"), step.displacement, {"units": "m"}),
-                    "velocity": (("time", "block"), step.velocity, {"units": "m s-1"}),
+                    "displacement": (("time", "block"), displacement, {"units": "m"}),
+                    "velocity": (("time", "block"), velocity, {"units": "m s-1"}),
                     "arrival": ("block", arrival, {"units": "s"}),
                     "stiffness": ((), calibrated[f"{direction}_stiffness"], {"units": "N m-3"}),
-                    "wave_speed": ((), wave_speed, {"units": "m s-1"}),
+                    "wave_speed": ((), speed, {"units": "m s-1"}),
                     "target_wave_speed": ((), calibrated["target_wave_speed"][direction], {"units": "m s-1"}),
                 },
-                coords={"time": ("time", step.time, {"units": "s"}), "block": blocks},
+                coords={"time": ("time", time, {"units": "s"}), "block": blocks},
             )
         )
     joined = xr.concat(tests, dim=xr.Variable("direction", list(AXES)), join="outer")

@@ -1,7 +1,5 @@
 """A step of velocity sent up a tower by LS-DEM: the experiment behind the contact stiffness."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from blockshake.dynamics.motion import ground_motion
@@ -17,27 +15,8 @@ _STEPS_A_BLOCK = 20
 _PASSAGES = 3.0  # of the tower at the long-wave speed of the chain, in a test
 
 
-class StepTest(NamedTuple):
-    """Histories of a step of velocity sent up a tower.
-
-    Attributes
-    ----------
-    time : float64 array, shape (n_times,)
-        [s], evenly spaced.
-    displacement, velocity : float64 arrays, shape (n_times, n_blocks)
-        Along the step, blocks from the lowest up [m, m/s].
-    height : float
-        Of the highest block's mass centre over that of the lowest [m].
-    """
-
-    time: np.ndarray
-    displacement: np.ndarray
-    velocity: np.ndarray
-    height: float
-
-
 def send_step(structure, parameters, direction):
-    """`StepTest` of the blocks of a tower whose base moves with the step's velocity from the start.
+    """Histories of the blocks of a tower whose base moves with the step's velocity from the start.
 
     Parameters
     ----------
@@ -46,6 +25,15 @@ def send_step(structure, parameters, direction):
     direction : str
         ``normal`` or ``shear``, whose horizontal step finds the rotations of the blocks blocked; a vertical one turns
         none.
+
+    Returns
+    -------
+    time : float64 array, shape (n_times,)
+        Evenly spaced [s].
+    displacement, velocity : float64 arrays, shape (n_times, n_blocks)
+        Along the step, blocks from the lowest up [m, m/s].
+    height : float
+        Of the highest block's mass centre over that of the lowest [m].
 
     Raises
     ------
@@ -69,7 +57,7 @@ def send_step(structure, parameters, direction):
     if run.status != Status.COMPLETED:
         raise no_passage(structure, direction, f"; {run.reason}")
     moved = run.position[:, blocks, axis] - run.position[0, blocks, axis]
-    return StepTest(times, moved, run.velocity[:, blocks, axis], height)
+    return times, moved, run.velocity[:, blocks, axis], height
 
 
 def no_passage(structure, direction, reason=""):
