@@ -126,26 +126,21 @@ def _study_line(source):
 
 
 def _read_measured(config, source):
-    """Read what the study's jobs read of measured tests, and plan its diagnoses."""
+    """Read what the study's jobs read of measured tests, open ones of calibrations too, and plan its diagnoses."""
     calibrated = config.calibration.cases.values() if config.calibration else ()
     for index, case in enumerate(config.cases):
         if case.measured is not None:
             with faults_of(source, f"cases.{index}.measured"):
                 measured_input(case.model_dump(), case.measured.model_dump())
                 if any(case.name in names for names in calibrated):
-                    _read_open_tests(case.measured.campaign)
+                    campaign = load_campaign(case.measured.campaign)
+                    for name in campaign.open:
+                        load_test(campaign, name)
+                        planned_motion(campaign, name)
     for folder in config.diagnosis.campaigns:
         with faults_of(source, "diagnosis.campaigns"):
             campaign_lines(folder)
             plan_diagnosis(folder, config.diagnosis.effort)
-
-
-def _read_open_tests(folder):
-    """Read the tests of a campaign that are not sealed, and their commands."""
-    campaign = load_campaign(folder)
-    for name in campaign.open:
-        load_test(campaign, name)
-        planned_motion(campaign, name)
 
 
 def _study_remarks(config, motions):

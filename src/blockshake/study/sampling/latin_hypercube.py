@@ -31,8 +31,6 @@ class SampleDesign:
         Correlation asked for and reached.
     kind : str
         ``pearson``: of the physical values; ``spearman``: of their ranks.
-    stratum : str
-        ``median``, the value that stands for each stratum, or ``own``: the samples are those of a table.
     seed, effort : int
         As given to `draw_samples`.
     """
@@ -41,7 +39,6 @@ class SampleDesign:
     target: pd.DataFrame
     correlation: pd.DataFrame
     kind: str
-    stratum: str
     seed: int
     effort: int
 
@@ -76,7 +73,6 @@ class SampleDesign:
             "size": len(self.values),
             "seed": self.seed,
             "effort": self.effort,
-            "stratum": self.stratum,
             "correlation_kind": self.kind,
             "rms_correlation_error": self.rms_error,
             "largest_correlation_error": self.largest_error,
@@ -148,7 +144,6 @@ def draw_samples(
         target=pd.DataFrame(target, index=names, columns=names),
         correlation=pd.DataFrame(reached, index=names, columns=names),
         kind=kind,
-        stratum="median",
         seed=int(seed),
         effort=int(effort),
     )
@@ -217,5 +212,5 @@ def draw_design(ensemble):
         reached = pd.DataFrame(
             np.atleast_2d(np.corrcoef(values, rowvar=False)), values.columns, values.columns
         )
-        return SampleDesign(values, reached, reached, "pearson", "own", int(ensemble["seed"]), 0)
+        return SampleDesign(values, reached, reached, "pearson", int(ensemble["seed"]), 0)
     return draw_samples(*(ensemble[key] for key in ("size", "seed", "distributions", "correlation")))
