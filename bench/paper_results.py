@@ -73,9 +73,9 @@ def parameters_matter(content):
         for quantity, measure in (("history", "first_order"), ("peak", "rank_correlation")):
             at = result.sel(quantity=quantity)
             if is_known(at, measure):
+                levels.append(float(at[f"{measure}_chance"]))
                 known = influences(at, measure)
-                levels.append(known.chance)
-                found = [one.parameter for one in known.beyond_chance if not one.control]
+                found = [one.parameter for one in known if one.beyond_chance and not one.control]
                 shown.setdefault(case.name, {}).update(dict.fromkeys(found))
     if not levels:
         return None, "The samples are too few for a sensitivity."

@@ -50,17 +50,17 @@ ROOMS_OF_STUDY = [
 MOST_MODULES = 15
 WITH_ROOMS = ("diagnosis", "study")  # whose folders have a budget each
 MOST_LINES = {
-    ".": 2335, "tables": 565, "statistics": 368, "geometry": 2645, "dynamics": 2989, "solvers": 8757,
+    ".": 2316, "tables": 565, "statistics": 368, "geometry": 2645, "dynamics": 2989, "solvers": 8757,
     "measurement": 4401, "simulation": 1910, "parity": 2245, "forces": 2189, "effects": 1168, "pages": 1424,
-    "study": 1006, "study/sampling": 1195, "study/ensembles": 1241, "study/stiffness": 512,
-    "study/comparison": 685, "study/fragility": 1020, "study/sensitivity": 700, "study/calibration": 1079,
-    "study/report": 1887, "views": 758, "diagnosis": 354, "diagnosis/evidence": 1119,
+    "study": 993, "study/sampling": 1146, "study/ensembles": 1227, "study/stiffness": 478,
+    "study/comparison": 646, "study/fragility": 971, "study/sensitivity": 673, "study/calibration": 1074,
+    "study/report": 1861, "views": 758, "diagnosis": 354, "diagnosis/evidence": 1119,
     "diagnosis/outside": 617, "diagnosis/answer": 1783, "diagnosis/nominal": 778, "diagnosis/misfit": 429,
-    "diagnosis/verdict": 592, "diagnosis/gain": 1502, "diagnosis/report": 973, "virtual": 477,
-    "own_files": 1181, "cost": 296, "diagnosis/flight": 1246, "diagnosis/outcomes": 916,
-    "diagnosis/planning": 580, "study/extension": 321,
+    "diagnosis/verdict": 592, "diagnosis/gain": 1495, "diagnosis/report": 959, "virtual": 477,
+    "own_files": 1172, "cost": 294, "diagnosis/flight": 1246, "diagnosis/outcomes": 916,
+    "diagnosis/planning": 569, "study/extension": 321,
 }  # fmt: skip
-MOST_LINES_TOGETHER = 53_690
+MOST_LINES_TOGETHER = 53_419
 
 
 def place(name, floors):

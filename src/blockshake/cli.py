@@ -12,7 +12,7 @@ from pathlib import Path
 from blockshake import __version__
 from blockshake.errors import BAD_INPUT, INTERRUPTED, Argument, InputError
 from blockshake.files import check_output, parse_yaml, write_json
-from blockshake.own_files.commands import add_baseline, add_data_commands
+from blockshake.own_files.commands import add_baseline, add_data_commands, pairs_of
 from blockshake.own_files.run_workflow import WorkflowError
 from blockshake.simulation.models import MODELS
 
@@ -117,6 +117,7 @@ def _parser():
         command.set_defaults(run=run)
         return command
 
+    steps = ", ".join(f"{model.time_step:g} for {name}" for name, model in MODELS.items())
     command = add("simulate", _simulate, "one structure under one motion, to a run file")
     command.add_argument("--structure", required=True, metavar="NAME|FILE")
     command.add_argument("--motion", required=True, metavar="NAME|FILE")
@@ -127,7 +128,7 @@ def _parser():
     )
     command.add_argument("--model", required=True, help=" or ".join(MODELS))
     _add_settings(command)
-    command.add_argument("--time-step", type=float, metavar="S", help=f"default {_default_steps()}")
+    command.add_argument("--time-step", type=float, metavar="S", help=f"default {steps}")
     command.add_argument("--output-rate", type=float, metavar="HZ", help="default: the optical system's")
     command.add_argument("--output", required=True, metavar="RUN.nc")
 
@@ -248,10 +249,6 @@ def _parser():
     return parser
 
 
-def _default_steps():
-    return ", ".join(f"{model.time_step:g} for {name}" for name, model in MODELS.items())
-
-
 def _add_settings(command):
     command.add_argument(
         "--set", dest="settings", action="append", default=[], metavar="KEY=VALUE",
@@ -267,15 +264,8 @@ def _add_run(command):
 
 
 def _settings(options):
-    settings = {}
-    for setting in options.settings:
-        key, equals, value = setting.partition("=")
-        if not equals or not key:
-            raise InputError("--set", setting, "expected KEY=VALUE")
-        if key in settings:
-            raise InputError("--set", setting, f"expected {key} once")
-        settings[key] = parse_yaml(value, f"--set {key}")
-    return settings
+    given = pairs_of(options.settings, "--set", "KEY=VALUE")
+    return {key: parse_yaml(value, f"--set {key}") for key, value in given.items()}
 
 
 def _simulate(options):

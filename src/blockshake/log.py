@@ -75,27 +75,18 @@ def logging_to(path):
             raise
         finally:
             root.removeHandler(handler)
-            log.write(_cost_since(before))
+            now = os.times()
+            cost = sum(now[:4]) - sum(before[:4])
+            log.write(f"Took {now.elapsed - before.elapsed:.2f} s, {cost:.2f} CPU s.\n")
 
 
 def read_reason(path):
     """`Reason` in the log of a job that failed; None where the job did not, was killed or has no log."""
-    groups = _last(_REASON, path)
-    return Reason(int(groups[0]), groups[1]) if groups else None
-
-
-def _last(pattern, path):
-    """Groups of the last line of a pattern in a log, or None."""
     try:
-        matches = pattern.findall(Path(path).read_text(encoding="utf-8"))
+        found = _REASON.findall(Path(path).read_text(encoding="utf-8"))
     except FileNotFoundError:
         return None
-    return matches[-1] if matches else None
-
-
-def _cost_since(before):
-    now = os.times()
-    return f"Took {now.elapsed - before.elapsed:.2f} s, {sum(now[:4]) - sum(before[:4]):.2f} CPU s.\n"
+    return Reason(int(found[-1][0]), found[-1][1]) if found else None
 
 
 class Failures(logging.Filter):

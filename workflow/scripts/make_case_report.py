@@ -1,6 +1,6 @@
 from blockshake.log import logging_to
-from blockshake.study.report.report import make_case_report
+from blockshake.study.report.report import make_report
 
 with logging_to(snakemake.log[0]):
     of, made = snakemake.params, snakemake.output
-    make_case_report(of.study, of.case, of.results, made.html, made.pdf)
+    make_report(of.study, of.results, made.html, made.pdf, of.case)

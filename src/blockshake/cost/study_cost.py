@@ -30,10 +30,8 @@ def study_cost(path):
     parts = []
     for model, settings in config.models.items():
         for case in config.cases:
-            structure, motion = (
-                load_structure(case.structure),
-                next(DrawnMotions.of(case.model_dump()).strongest()),
-            )
+            structure = load_structure(case.structure)
+            motion = next(DrawnMotions.of(case.model_dump()).strongest())
             trial = {"model": solver_of(model).name, **settings.model_dump()}
             asked = _runs(config, model, case)
             runs = sum(count for count, _ in asked.values())

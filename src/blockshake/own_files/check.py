@@ -22,6 +22,7 @@ from blockshake.measurement.campaigns.commanded_motion import commanded_motion
 from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.own_files.import_campaign import import_campaign
 from blockshake.own_files.import_map import ImportMap, load_map
+from blockshake.pages.wording import count_words
 from blockshake.study.config import StudyConfig, load_config
 from blockshake.study.config_checks import typical_structure
 from blockshake.study.ensembles.case_input import measured_input
@@ -115,37 +116,31 @@ def _study_line(source):
     for model in config.models:
         counts = sorted({config.samples(model, case.name) for case in config.cases})
         models.append(f"{model} ({' to '.join(map(str, dict.fromkeys((counts[0], counts[-1]))))} samples)")
-    count = f"{len(config.cases)} case{'s' * (len(config.cases) != 1)}"
     loaded = {}
     motions = {
         case.name: list(DrawnMotions.of(case.model_dump(), loaded).strongest()) for case in config.cases
     }
     records = [f"  {name}: {provenance(motion.attributes)}" for (name, _), motion in loaded.items()]
-    lines = [f"a study of {count} by {', '.join(models)}", *records]
+    lines = [f"a study of {count_words(len(config.cases), 'case')} by {', '.join(models)}", *records]
     return _with_remarks(lines, _study_remarks(config, motions))
 
 
 def _read_measured(config, source):
-    """Read what the study's jobs read of measured tests, and plan its diagnoses."""
+    """Read what the study's jobs read of measured tests, open ones of calibrations too, and plan its diagnoses."""
     calibrated = config.calibration.cases.values() if config.calibration else ()
     for index, case in enumerate(config.cases):
         if case.measured is not None:
             with faults_of(source, f"cases.{index}.measured"):
                 measured_input(case.model_dump(), case.measured.model_dump())
                 if any(case.name in names for names in calibrated):
-                    _read_open_tests(case.measured.campaign)
+                    campaign = load_campaign(case.measured.campaign)
+                    for name in campaign.open:
+                        load_test(campaign, name)
+                        planned_motion(campaign, name)
     for folder in config.diagnosis.campaigns:
         with faults_of(source, "diagnosis.campaigns"):
             campaign_lines(folder)
             plan_diagnosis(folder, config.diagnosis.effort)
-
-
-def _read_open_tests(folder):
-    """Read the tests of a campaign that are not sealed, and their commands."""
-    campaign = load_campaign(folder)
-    for name in campaign.open:
-        load_test(campaign, name)
-        planned_motion(campaign, name)
 
 
 def _study_remarks(config, motions):

@@ -97,16 +97,17 @@ def _given(options, names):
     return {name: getattr(options, name) for name in names if getattr(options, name) is not None}
 
 
-def _columns(options):
-    columns = {}
-    for entry in options.column:
-        key, equals, name = entry.partition("=")
-        if not equals or not key or not name:
-            raise InputError("--column", entry, "expected READING=COLUMN")
-        if key in columns:
-            raise InputError("--column", entry, f"expected {key} once")
-        columns[key] = name
-    return columns
+def pairs_of(entries, option, form):
+    """Values by key of the entries ``KEY=VALUE`` of an option; ``form``: how an error shows them."""
+    pairs = {}
+    for entry in entries:
+        key, _, value = entry.partition("=")
+        if not key or not value:
+            raise InputError(option, entry, f"expected {form}")
+        if key in pairs:
+            raise InputError(option, entry, f"expected {key} once")
+        pairs[key] = value
+    return pairs
 
 
 def _convert_motion(options):
@@ -118,7 +119,7 @@ def _convert_motion(options):
     from blockshake.tables.table_file import TableLayout
     from blockshake.validation import validated
 
-    columns = _columns(options)
+    columns = pairs_of(options.column, "--column", "READING=COLUMN")
     if _given(options, ("unit", "time", "time_unit", *_LAYOUT)):
         if not options.unit:
             raise InputError("--unit", "", "expected for a table; the unit and the columns are never guessed")
@@ -148,7 +149,7 @@ def _import_campaign(options):
         options, ("structure", "motion", "scale", "baseline", "role", "displacement_unit", "acceleration_unit", "rest",
                   "time", "time_unit", *_LAYOUT),
     )  # fmt: skip
-    columns, where = _columns(options), options.sources[0]
+    columns, where = pairs_of(options.column, "--column", "READING=COLUMN"), options.sources[0]
     if Path(where).suffix in (".yaml", ".yml"):
         more = [*given, *["column"] * bool(columns), *["fill_gaps"] * options.fill_gaps]
         if len(options.sources) > 1 or more:

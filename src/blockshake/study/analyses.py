@@ -15,11 +15,7 @@ from blockshake.study.config_checks import (
 from blockshake.study.sampling.sample_table import load_design
 
 OF_THE_PAPER = tuple(f"configuration-{number}" for number in (1, 2, 3, 4))
-
-
-def is_of_the_paper(structure):
-    """Whether a structure is one of Zhou et al. (2023), by its shipped name."""
-    return structure in OF_THE_PAPER
+"""Structures of Zhou et al. (2023), by their shipped names."""
 
 
 def _every_case(study):
@@ -38,7 +34,7 @@ def _drawing_cases(study):
 def _cases_of_stiffness(study):
     """Cases of a study that tells of contact stiffness: a model has any, or a structure is the paper's."""
     calibrated = any(solver_of(model).calibrated for model in study["models"])
-    named = calibrated or any(is_of_the_paper(case["structure"]) for case in study["cases"])
+    named = calibrated or any(case["structure"] in OF_THE_PAPER for case in study["cases"])
     return _every_case(study) if named else []
 
 

@@ -126,18 +126,15 @@ def check_names(config, where):
         for path in (HOME / "Snakefile", *HOME.glob("workflow/rules/*.smk"))
         for rule in _RULE.findall(path.read_text(encoding="utf-8"))
     ]
-    names = [case.name for case in config.cases]
+    names, by_name = [case.name for case in config.cases], {}
     paths = [("diagnosis.campaigns", folder) for folder in config.diagnosis.campaigns]
-    for key in ("correlation", "table"):
-        if getattr(config.ensemble, key) is not None:
-            paths.append((f"ensemble.{key}", getattr(config.ensemble, key)))
-    naming = []
+    paths += [(f"ensemble.{key}", getattr(config.ensemble, key)) for key in ("correlation", "table")]
     for index, case in enumerate(config.cases):
-        naming += [(f"cases.{index}.structure", case.structure), (f"cases.{index}.motion", case.motion)]
-        if case.measured:
-            paths.append((f"cases.{index}.measured.campaign", case.measured.campaign))
-    for key, path in [*paths, *naming]:
-        check_plain(path, where, key)
+        paths.append((f"cases.{index}.measured.campaign", case.measured and case.measured.campaign))
+        paths += [(f"cases.{index}.{key}", getattr(case, key)) for key in ("structure", "motion")]
+    for key, path in paths:
+        if path is not None:
+            check_plain(path, where, key)
     for index, case in enumerate(config.cases):
         key = f"cases.{index}.name"
         if case.name != Path(case.structure).stem and not _NAME.fullmatch(case.name):
@@ -146,17 +143,14 @@ def check_names(config, where):
             raise InputError(where, key, f"expected another name than the workflow's rule {case.name}")
         if names.count(case.name) > 1:
             raise InputError(where, key, f"expected a name of its own, as there are two cases {case.name}")
-    by_name = {}
-    for key, path in naming:
-        name = Path(path).stem
-        if not _NAME.fullmatch(name):
-            raise InputError(
-                where, key, f"expected letters, digits, dots, hyphens in the name of the file, not '{name}'"
-            )
-        if "motion" in key and by_name.setdefault(name, path) != path:
-            raise InputError(
-                where, key, f"expected motions of different names, not {by_name[name]} and {path}"
-            )
+        for key, path in (("structure", case.structure), ("motion", case.motion)):
+            if not _NAME.fullmatch(Path(path).stem):
+                wrong = f"expected letters, digits, dots, hyphens in the name of the file, not '{Path(path).stem}'"
+                raise InputError(where, f"cases.{index}.{key}", wrong)
+        other = by_name.setdefault(Path(case.motion).stem, case.motion)
+        if other != case.motion:
+            wrong = f"expected motions of different names, not {other} and {case.motion}"
+            raise InputError(where, f"cases.{index}.motion", wrong)
 
 
 def check_structure(name, where, key):

@@ -11,6 +11,7 @@ from blockshake.geometry.overlap import depths_of_pairs, near_pairs
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import DEEPEST_OVERLAP, START_TOLERANCE
 from blockshake.geometry.structure_file import point_remarks
+from blockshake.pages.wording import count_words
 from blockshake.quantities import PHYSICAL, USUAL
 from blockshake.simulation.parameter_table import instances
 
@@ -36,17 +37,13 @@ def structure_lines(structure):
     joints = np.count_nonzero(np.triu(structure.touching))
     weight = f"{_kilograms(structure.mass[free].sum())} in all"
     return [
-        f"a structure of {_counted(len(free), 'block')} of {weight}, and {_counted(joints, 'joint')}",
+        f"a structure of {count_words(len(free), 'block')} of {weight}, and {count_words(joints, 'joint')}",
         *(f"  {count} of {words}" for words, count in alike.items()),
     ]
 
 
 def _kilograms(mass):
     return f"{mass:.0f} kg" if mass >= 100.0 else f"{mass:.3g} kg"
-
-
-def _counted(number, name):
-    return f"{number} {name}{'' if number == 1 else 's'}"
 
 
 def _block_words(structure, body):
@@ -129,8 +126,8 @@ def _misfits(structure):
     if inside.any():
         a, b = (structure.body_names[body] for body in pairs[depth.argmax()])
         yield (
-            f"{_counted(np.count_nonzero(inside), 'joint')} overlapping, by up to {1e3 * depth.max():.2g} mm ({a} and "
-            f"{b}): a run starts them as they are laid, pressed by the weight alone"
+            f"{count_words(np.count_nonzero(inside), 'joint')} overlapping, by up to {1e3 * depth.max():.2g} mm ({a} "
+            f"and {b}): a run starts them as they are laid, pressed by the weight alone"
         )
     apart = (depth < -START_TOLERANCE) & (depth > -DEEPEST_OVERLAP)
     # a gap is one to fall through where it closes as the upper body comes down by it

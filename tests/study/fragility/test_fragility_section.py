@@ -1,4 +1,4 @@
-"""Section on the fragility: figures of the files, in words and in a table."""
+"""Section on the fragility: figures of the files, in words."""
 
 from dataclasses import replace
 
@@ -37,16 +37,6 @@ def test_median_is_told_as_a_factor_and_as_an_acceleration(content):
 def test_samples_that_still_fall_are_told(content):
     falling = with_fragility(content, status="falling")
     assert "5 samples still fell when the window ended, which counts as a collapse." in words(falling, CASE)
-
-
-def test_a_table_has_every_level_with_its_share(content):
-    *_, table = fragility(content).blocks
-    assert len(table.rows) == 6
-    # the first of five does not pass 1.0; the last one's run there tells nothing of 1.25
-    assert table.rows[2][1:2] + table.rows[2][3:4] == ("1", "5")
-    assert table.rows[2][4].startswith("20.0 [0.5, 71.6]")
-    assert table.rows[5][3] == "0"
-    assert table.rows[5][5] == "none"
 
 
 def test_samples_that_all_pass_tell_no_fragility(content):

@@ -21,7 +21,7 @@ from blockshake.study.report import content
 from blockshake.study.report.answer import answer
 from blockshake.study.report.content import load_content
 from blockshake.study.report.opening_sections import failures
-from blockshake.study.report.report import compose, make_case_report, make_report
+from blockshake.study.report.report import compose, make_report
 from blockshake.study.report.result_sections import band_remarks
 
 
@@ -184,7 +184,7 @@ def test_the_answer_is_first_and_what_nobody_asked_for_is_not_there(document, te
 
 def test_own_structures_by_rigid_models_need_no_contact_stiffness(copied, monkeypatch):
     for module in (analyses, content):
-        monkeypatch.setattr(module, "is_of_the_paper", lambda structure: False)
+        monkeypatch.setattr(module, "OF_THE_PAPER", ())
     for name in ("stiffness", "waves"):
         shutil.rmtree(copied.results / name)
     study = {**copied.study, "models": {"nscd-rigid": MODELS["nscd-rigid"]}}
@@ -198,7 +198,7 @@ def test_case_alone_needs_and_tells_nothing_of_the_others(copied, tmp_path):
     for path in others:
         path.unlink()
     html, pdf = tmp_path / "case.html", tmp_path / "case.pdf"
-    make_case_report(fake.study, "configuration-4", fake.results, html, pdf)
+    make_report(fake.study, fake.results, html, pdf, "configuration-4")
     assert pdf.read_bytes().startswith(b"%PDF")
     parsed = Page()
     parsed.feed(html.read_text(encoding="utf-8"))

@@ -11,8 +11,8 @@ from blockshake.statistics.intervals import share_interval
 from blockshake.study.report.answer import answer
 from blockshake.study.report.case_outcomes import models_apart, most_telling, outcomes, shares_at_impacts
 from blockshake.study.report.content import load_content
-from blockshake.study.report.joints_table import joints_table
 from blockshake.study.report.open_questions import MOST, next_steps, unknown
+from blockshake.study.report.result_sections import joints_table
 
 FIRST, FOURTH = "configuration-1", "configuration-4"
 

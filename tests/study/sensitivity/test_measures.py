@@ -183,13 +183,3 @@ def test_output_that_does_not_vary_has_no_sensitivity():
     for found in (first_order_share(inputs, outputs), partial_rank_correlation(inputs, outputs)[0]):
         assert np.isnan(found[0]).all()
         assert np.isfinite(found[1]).all()
-
-
-def test_openturns_finds_the_same_partial_rank_correlation():
-    openturns = pytest.importorskip("openturns")
-    inputs, output = linear(7, 50, SLOPES)
-    output = output + np.random.default_rng(8).normal(size=output.shape)
-    theirs = openturns.CorrelationAnalysis(
-        openturns.Sample(inputs), openturns.Sample(output[:, 0])
-    ).computePRCC()
-    np.testing.assert_allclose(partial_rank_correlation(inputs, output)[0][0], np.array(theirs), atol=1e-10)

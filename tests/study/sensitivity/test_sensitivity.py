@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from fake_study import ensemble_of
 
-from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
 from blockshake.study.sampling.latin_hypercube import draw_samples
 from blockshake.study.sampling.sample_parameters import sample_parameters, unused_variables
@@ -121,8 +120,6 @@ def test_stiffness_is_no_variable_unless_asked_for(ensemble, design):
     values = design.assign(**{"ls_dem.normal_stiffness": design[YOUNG] / 1.6})
     result = sensitivity(ensemble(values=values), list(design.columns))
     assert "ls_dem.normal_stiffness" not in result["parameter"].values
-    with pytest.raises(InputError, match=r"sensitivity: friction\.nothing"):
-        sensitivity(ensemble(), ["friction.nothing"])
 
 
 def test_controls_are_what_model_and_structure_have_no_use_for(design):

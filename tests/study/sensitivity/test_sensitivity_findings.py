@@ -28,16 +28,16 @@ def result(values, measure="first_order", chance=0.3):
 
 def test_variables_are_ranked_by_their_share_and_a_negative_share_is_last():
     found = influences(result([-0.9, 0.5, 0.31]), "first_order")
-    assert [one.parameter for one in found.ranked] == ["b", "c", "a"]
-    assert [one.parameter for one in found.beyond_chance] == ["b", "c"]
-    assert found.ranked[0][2:5] == pytest.approx((0.5, 0.4, 0.7))
-    assert found.ranked[1].control
+    assert [one.parameter for one in found] == ["b", "c", "a"]
+    assert [one.parameter for one in found if one.beyond_chance] == ["b", "c"]
+    assert found[0][2:5] == pytest.approx((0.5, 0.4, 0.7))
+    assert found[1].control
 
 
 def test_variables_are_ranked_by_the_magnitude_of_their_correlation():
     found = influences(result([-0.9, 0.5, 0.3], "rank_correlation"), "rank_correlation")
-    assert [one.parameter for one in found.ranked] == ["a", "b", "c"]
-    assert [one.beyond_chance for one in found.ranked] == [True, True, False]  # 0.3 is not beyond 0.3
+    assert [one.parameter for one in found] == ["a", "b", "c"]
+    assert [one.beyond_chance for one in found] == [True, True, False]  # 0.3 is not beyond 0.3
 
 
 def test_what_is_not_known_differs_from_nothing():

@@ -90,10 +90,8 @@ def extend_study(verdict, study, output):
         if any(map(_has_place, causes)) and structure.content != found.structure:
             lines.append(f"{case.name} is left out: its structure is not the one that was tested")
             continue
-        path, name = (
-            output.with_name(f"{output.stem}-{Path(case.structure).stem}.yaml"),
-            f"{case.name}-extended",
-        )
+        path = output.with_name(f"{output.stem}-{Path(case.structure).stem}.yaml")
+        name = f"{case.name}-extended"
         if case.structure not in extended:
             extended[case.structure] = _extended(structure, causes, path)
         given = case.model_dump(mode="json", exclude_defaults=True)
@@ -223,10 +221,8 @@ def _ensemble(ensemble, variables, path):
         rising = np.quantile(values, _STEPS) + _RISE * np.ptp(values) * _STEPS
         given[name] = {"distribution": "tabulated", "values": list(map(_rounded, rising))}
     asked = {"size": ensemble.size, "seed": ensemble.seed, "distributions": given, "linked": linked}
-    target, own = (
-        complete_correlation(ensemble.correlation, list(given)),
-        slice(len(ensemble.distributions), None),
-    )
+    target = complete_correlation(ensemble.correlation, list(given))
+    own = slice(len(ensemble.distributions), None)
     among = np.atleast_2d(np.corrcoef(list(leaders.values())))
     target[own, own] = np.round(nearest_correlation(np.where(np.abs(among) > _TOLD, among, 0.0)), 4)
     named = np.flatnonzero((target != np.eye(len(given))).any(axis=0))

@@ -83,7 +83,8 @@ def posterior_draws(draws, features, measured):
 
     Places, time step and seed stay each draw's own, and so does a parameter in which all draws agree.
     """
-    names = _varied(draws)
+    names = [*draws[0].parameters, "amplitude"]
+    names = [name for name in names if len({_value(draw, name) for draw in draws}) > 1]
     values = np.array([[_value(draw, name) for name in names] for draw in draws])
     ends = [_ends(name, column) for name, column in zip(names, values.T, strict=True)]
     scores = np.column_stack(
@@ -106,11 +107,6 @@ def posterior_draws(draws, features, measured):
         _with_values(draw, dict(zip(names, row.tolist(), strict=True)))
         for draw, row in zip(draws, posterior, strict=True)
     ]
-
-
-def _varied(draws):
-    names = [*draws[0].parameters, "amplitude"]
-    return [name for name in names if len({_value(draw, name) for draw in draws}) > 1]
 
 
 def _value(draw, name):

@@ -1,7 +1,6 @@
 """Expected answers: an effect of a size put into the rows of nominal tests, and how surely the decision tells it."""
 
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 from scipy.special import ndtr
@@ -18,18 +17,6 @@ from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
 from blockshake.effects.registry import EFFECTS
 
 _AT_LIMIT = 5.5  # standard deviations of an amplitude at its limit, within a tenth for all effects
-
-
-class Rivalry(NamedTuple):
-    """A true effect against one rival: odds expected of it and their standard deviation, logarithms, coarsened.
-
-    ``place`` in words and ``values``, parameters, are those of the rival at its best.
-    """
-
-    odds: float
-    deviation: float
-    place: str
-    values: dict
 
 
 class NominalCampaign:
@@ -63,10 +50,10 @@ class NominalCampaign:
             alone = np.sqrt(distance(static, read, {}, {}, {}))
             seen = max(seen, float(ndtr(alone - np.sqrt(2.0 * needed_of(name)))))
         chances = {None: seen}
-        for rival, one in self._rivals(name, place, size).items():
+        for rival, (odds, deviation, where, values) in self._rivals(name, place, size).items():
             if static:
-                further = distance(static, read, {}, self._reads(rival, one.place, one.values), {})
-            sure = (one.odds + 0.5 * further - ODDS) / np.sqrt(max(one.deviation**2 + further, 1e-12))
+                further = distance(static, read, {}, self._reads(rival, where, values), {})
+            sure = (odds + 0.5 * further - ODDS) / np.sqrt(max(deviation**2 + further, 1e-12))
             chances[rival] = min(seen, float(ndtr(sure)))
         return chances
 
@@ -74,7 +61,10 @@ class NominalCampaign:
         return expected_readings(self.seen[0], cause, place_of(cause, place, self.seen[0]), values)
 
     def _rivals(self, name, place, size):
-        """`Rivalry` by cause: all are tried on the rows that the effect would make, without noise."""
+        """`_odds` of the effect over each rival, and place and parameters of the rival at its best, by cause.
+
+        All are tried on the rows that the effect would make, without noise.
+        """
         if EFFECTS[name].columns is None:
             return self._of_slab(name, size) if EFFECTS[name].turns else {}
         soft, evidence = name == JOINT_COMPLIANCE.name, self._evidence
@@ -97,7 +87,7 @@ class NominalCampaign:
         own, found = ranked.pop(name), {}
         for rival, one in ranked.items():
             odds = _odds(own.gain, own.gain - one.gain, one.score - one.gain - own.score + own.gain)
-            found[rival] = Rivalry(*odds, one.place, _values(explained.by_key.get((rival, one.place))))
+            found[rival] = *odds, one.place, _values(explained.by_key.get((rival, one.place)))
         return found
 
     def _of_slab(self, name, size):
@@ -111,8 +101,7 @@ class NominalCampaign:
         explained = {other: best_of(expected, other, EVERYWHERE, tried) for other, tried in variants.items()}
         own = explained.pop(name).gain
         return {
-            other: Rivalry(*_odds(own, own - one.gain), EVERYWHERE, _values(one))
-            for other, one in explained.items()
+            other: (*_odds(own, own - one.gain), EVERYWHERE, _values(one)) for other, one in explained.items()
         }
 
 

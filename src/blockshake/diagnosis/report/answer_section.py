@@ -45,28 +45,17 @@ def answer_section(diagnosed):
 
 def _facts(diagnosed):
     """The three numbers of the box: chance without a cause, size, gain, each with its label and a note."""
-    return (
-        (
-            "Chance of such readings without a cause",
-            chance_words(diagnosed.verdict.misfit.p),
-            "upper bound, over all that was tried",
-        ),
-        _size_fact(diagnosed),
-        _gain_fact(diagnosed.verdict),
-    )
+    chance = chance_words(diagnosed.verdict.misfit.p)
+    seen = "Chance of such readings without a cause", chance, "upper bound, over all that was tried"
+    return seen, _size_fact(diagnosed.decision), _gain_fact(diagnosed.verdict)
 
 
-def _size_fact(diagnosed):
-    for part in diagnosed.decision.parts:
-        first = part.causes[0]
+def _size_fact(decision):
+    for first in (part.causes[0] for part in decision.parts):
         for name, estimate in first.parameters.items():
             return f"{name} of {first.title}", estimate_words(name, estimate), "90 % interval"
-    limits = diagnosed.decision.excluded_above
-    return (
-        "Effects excluded from some size on",
-        str(len(limits)),
-        "wherever they act; sizes in the table of limits",
-    )
+    count = str(len(decision.excluded_above))
+    return "Effects excluded from some size on", count, "wherever they act; sizes in the table of limits"
 
 
 def _gain_fact(verdict):
@@ -137,7 +126,9 @@ def _forces(diagnosed, causes):
             "No joint turned, slipped or lifted in any test, so that no force can be read off the motion."
         )
     blows = {test: one["time"] for own in when for test, one in own.get("blows", {}).items()}
-    shown = shown.isel(instant=_near(shown, blows))
+    if blows:
+        at = np.array([blows.get(test, np.inf) for test in shown["test"].values.tolist()])
+        shown = shown.isel(instant=np.flatnonzero(np.abs(shown["time"].to_numpy() - at) <= _ABOUT))
     tests = shown_tests(shown)
     left_out = [name for name in diagnosed.decision.tests if name not in tests]
     titles = " and ".join(one.title for one in causes if shown["explained"].any())
@@ -150,12 +141,6 @@ def _forces(diagnosed, causes):
         + (f" Not drawn: {', '.join(left_out)}." if left_out else "")
     )
     return Figure(words, svg_of(plot_forces, shown, tests, bodies, titles, diagnosed.measured_word))
-
-
-def _near(shown, blows):
-    """Whether instants are near the blow of their test; all of them without a blow."""
-    at = np.array([blows.get(test, np.inf) for test in shown["test"].values.tolist()])
-    return np.flatnonzero(np.abs(shown["time"].to_numpy() - at) <= _ABOUT) if blows else slice(None)
 
 
 def _slab(diagnosed, part):

@@ -37,7 +37,7 @@ class Diagnosed:
     structure : str
         Its name.
     motions : dict of str to dict
-        By name of a commanded motion: its provenance.
+        By name of a commanded motion that is at hand: its provenance.
     track_record : TrackRecord or None
         None while the procedure has none.
     digests, versions : dict of str to str
@@ -81,6 +81,8 @@ def load_diagnosed(campaign, results, effort, track_record):
     gain = results / _GAIN if verdict.gain else None  # a file of an earlier gain may still lie there
     misfit = results / _MISFIT if effort != "quick" and (results / _MISFIT).exists() else None
     files += [path for path in (gain, misfit) if path]
+    tests = {test.motion: test for test in campaign.tests.values()}
+    motions = {name: commanded_motion(campaign, test) for name, test in tests.items()}
     return Diagnosed(
         campaign=campaign,
         effort=effort,
@@ -93,7 +95,7 @@ def load_diagnosed(campaign, results, effort, track_record):
         misfit=load_made(misfit) if misfit else None,
         structure=structure.file.name,
         bodies=tuple(structure.body_names),
-        motions=_motions(campaign),
+        motions={name: one.attributes for name, one in motions.items() if one is not None},
         track_record=load_track_record(track_record) if track_record.exists() else None,
         digests={"/".join(path.parts[-2:]): file_digest(path) for path in files},
         versions=software_versions(),
@@ -104,10 +106,3 @@ def _synthetic(attributes):
     """Whether a test file says of itself that it is synthetic: by this program's mark, its title or its source."""
     words = f"{attributes.get('title', '')} {attributes.get('source', '')}".lower()
     return bool(attributes.get("synthetic", 0)) or "synthetic" in words
-
-
-def _motions(campaign):
-    """Provenance of the motions that were commanded; nothing of one that is not at hand."""
-    tests = {test.motion: test for test in campaign.tests.values()}
-    motions = {name: commanded_motion(campaign, test) for name, test in tests.items()}
-    return {name: motion.attributes for name, motion in motions.items() if motion is not None}

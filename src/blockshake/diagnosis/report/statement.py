@@ -26,7 +26,10 @@ def statement(diagnosed):
     """The answer in one sentence: what acts, where, and how large."""
     verdict, decision = diagnosed.verdict, diagnosed.decision
     word = verdict.word[0].upper() + verdict.word[1:]
-    acting = [_of_part(diagnosed, part) for part in decision.parts]
+    acting = [
+        "; or ".join(cause_words(one, _places(diagnosed, one)) for one in part.causes)
+        for part in decision.parts
+    ]
     sensors = sensor_causes(diagnosed)
     if verdict.word == NOTHING:
         return f"{word}: {_looked_at(decision)} hold no force that sound blocks would not make."
@@ -46,11 +49,6 @@ def statement(diagnosed):
 def _looked_at(decision):
     tests = count_words(len(decision.moved or decision.tests), "test")
     return f"{count_words(decision.n_rows, 'equation')} of motion in {tests}"
-
-
-def _of_part(diagnosed, part):
-    """Causes of one part of the readings that are not told apart."""
-    return "; or ".join(cause_words(one, _places(diagnosed, one)) for one in part.causes)
 
 
 def _places(diagnosed, cause):

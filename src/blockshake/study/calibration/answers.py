@@ -177,17 +177,13 @@ def answer_questions(questions, seed):
     answers = {}
     for name, (shares, tests) in questions.items():
         chance = float(rank_chance(told[name], largest))
-        answers[name] = _answer(scores[name], chance, shares, tests, counts[name])
+        score, limit, lower, upper = scores[name], np.inf, 0.0, 1.0
+        if chance <= 1.0 - LEVEL:
+            limit = excess_of_truth(shares, tests, counts[name])
+            kept = np.flatnonzero(score - score.min() <= limit)
+            lower, upper = float(SHARES[kept[0]]), float(SHARES[kept[-1]])
+        answers[name] = Answer(score, limit, chance, lower, upper)
     return answers
-
-
-def _answer(score, chance, shares, tests, counts):
-    limit, lower, upper = np.inf, 0.0, 1.0
-    if chance <= 1.0 - LEVEL:
-        limit = excess_of_truth(shares, tests, counts)
-        kept = np.flatnonzero(score - score.min() <= limit)
-        lower, upper = float(SHARES[kept[0]]), float(SHARES[kept[-1]])
-    return Answer(score, limit, chance, lower, upper)
 
 
 def excess_of_truth(shares, tests, counts):

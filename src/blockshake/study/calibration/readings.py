@@ -28,9 +28,8 @@ from blockshake.study.ensembles.case_input import (
 from blockshake.study.sampling.sample_parameters import sample_parameters
 
 _SEGMENT = 1.0  # s, of the spectra: lines 1 Hz apart
-_HALVINGS = (
-    3  # of the step of a run that does not converge: joints of a hollow face or of many blocks ask for less
-)
+# of the step of a run that does not converge: joints of a hollow face or of many blocks ask for less
+_HALVINGS = 3
 _DECIMALS = {"m": 7, "1": 5}  # a thousandth of the markers' noise; of a logarithm
 
 

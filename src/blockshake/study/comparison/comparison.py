@@ -21,7 +21,14 @@ from blockshake.statistics.scores import (
 from blockshake.store import load_made
 from blockshake.study.comparison.two_levels import two_levels
 from blockshake.study.ensembles.case_input import measured_on_clock
-from blockshake.study.ensembles.ensemble import ALONG_X, POSES, describe, join_batches, relative_to_slab
+from blockshake.study.ensembles.ensemble import (
+    ALONG_X,
+    POSES,
+    block_curves,
+    describe,
+    join_batches,
+    moving_markers,
+)
 from blockshake.study.ensembles.envelope import counted_samples
 
 MOST = 400  # samples of a model that are compared: each is held against each
@@ -123,10 +130,6 @@ def compare_models(ensembles, twins, measured):
     )
     result = result.assign_coords(model=models, other=models)
     describe(result, _DESCRIBED)
-    for name in result:
-        if str(name).endswith("_interval"):
-            of = result[str(name).removesuffix("_interval")].attrs
-            result[name].attrs = {"long_name": f"limits of the {of['long_name']}", "units": of["units"]}
     result.attrs = {
         "title": "models of one case held against each other",
         "structure": structure,
@@ -141,24 +144,11 @@ def _generator(seed, *names):
     return np.random.default_rng([seed, *(int(content_digest(name), 16) for name in names)])
 
 
-def _blocks(ensemble):
-    """Markers of the blocks, without that of the slab."""
-    slab = ensemble.attrs["slab_marker"]
-    return [str(name) for name in ensemble["marker"].values if name != slab]
-
-
-def _curves(ensemble):
-    """Displacement of the blocks along x relative to the slab, float64 (n_samples, n_times, n_markers) [m]."""
-    moved = ensemble["marker_displacement"].sel(axis="x", drop=True)
-    along = relative_to_slab(moved, ensemble.attrs["slab_marker"])
-    return along.sel(marker=_blocks(ensemble)).transpose(..., "time", "marker").to_numpy()
-
-
 def _alone(counted, seed):
     """Numbers of each model by itself."""
     parts = []
     for model, ensemble in counted.items():
-        blocks, size = _blocks(ensemble), ensemble.sizes["sample"]
+        blocks, size = moving_markers(ensemble), ensemble.sizes["sample"]
         one = {"counted": ((), size)}
         for name in ("peak", "residual"):
             values = ensemble[name].sel(frame="slab", marker=blocks).transpose("sample", "marker").to_numpy()
@@ -166,7 +156,7 @@ def _alone(counted, seed):
             one[f"{name}_interval"] = (("bound", "marker"), quantile_interval(values, _MIDDLE)[:, 0])
         width, width_limits = np.full(len(blocks), np.nan), np.full((2, len(blocks)), np.nan)
         if size >= FEWEST:
-            curves = _curves(ensemble)
+            curves = block_curves(ensemble)
             weights = resampled_weights(size, _generator(seed, model))
             width, *resampled = mean_width(mean_differences(curves, curves), weights)
             width_limits = limits_of(np.array(resampled)) if size >= SURE_FROM else width_limits
@@ -179,7 +169,7 @@ def _changes(counted, seed):
     """Changes by the settings of a model against that of its solver's plain name, over the samples of both."""
     parts = []
     for model, own in counted.items():
-        other, blocks = counted.get(solver_of(model).name, own), _blocks(own)
+        other, blocks = counted.get(solver_of(model).name, own), moving_markers(own)
         both = [] if other is own else np.intersect1d(own["sample"], other["sample"])
         pair = [one.isel(sample=np.isin(one["sample"], both)) for one in (own, other)]
         one = {"changed": ((), len(both))}
@@ -191,7 +181,7 @@ def _changes(counted, seed):
         drawn = np.full((1, len(blocks)), np.nan)
         if len(both) >= FEWEST:
             weights = resampled_weights(len(both), _generator(seed, "change", model))
-            widths = [mean_width(mean_differences(of, of), weights) for of in map(_curves, pair)]
+            widths = [mean_width(mean_differences(of, of), weights) for of in map(block_curves, pair)]
             drawn = np.subtract(*widths)
         one["width_change"] = ("marker", drawn[0])
         limits = limits_of(drawn[1:] if len(both) >= SURE_FROM else drawn[:0])
@@ -207,7 +197,7 @@ def _pairs(counted, limit, seed):
     names = ("distance", "distance_chance", "history_difference", "parting_time")
     pairs = {name: np.full(shape, np.nan) for name in names}
     interval, common = np.full((2, *shape), np.nan), np.zeros(shape, dtype=int)
-    curves = {model: _curves(ensemble) for model, ensemble in counted.items()}
+    curves = {model: block_curves(ensemble) for model, ensemble in counted.items()}
     for row, column in combinations(range(len(models)), 2):
         model, other = models[row], models[column]
         both = np.concatenate([curves[model], curves[other]])
@@ -228,7 +218,8 @@ def _pairs(counted, limit, seed):
             parting_time(time, curves[model][a], curves[other][b], limit)
             for a, b in zip(at_model, at_other, strict=True)
         ]
-        values["parting_time"] = _upper_median(parted)
+        # some may be infinite; of two middle ones the later
+        values["parting_time"] = sorted(parted)[len(parted) // 2] if parted else np.nan
         for cell in ((row, column), (column, row)):
             common[cell] = len(shared)
             interval[:, *cell] = quantile_interval(of_both, _MIDDLE)[:, 0]
@@ -253,11 +244,6 @@ def parting_time(time, curve, other, limit):
     return float(time[np.argmax(parted)]) if parted.any() else np.inf
 
 
-def _upper_median(times):
-    """Median of times some of which may be infinite; of two middle ones the later."""
-    return sorted(times)[len(times) // 2] if times else np.nan
-
-
 def _numerics(counted, twins, limit):
     """Floor and horizon of each model's numerics, NaN without a twin, or where it or its sample failed."""
     models = list(counted)
@@ -268,7 +254,7 @@ def _numerics(counted, twins, limit):
         twin = counted_samples(twins[model])
         shared = np.intersect1d(twin["sample"], counted[model]["sample"])
         if shared.size:
-            sample, other = (_curves(one.sel(sample=shared)) for one in (counted[model], twin))
+            sample, other = (block_curves(one.sel(sample=shared)) for one in (counted[model], twin))
             floor[row] = mean_differences(sample, other).mean()
             horizon[row] = parting_time(twin["time"].to_numpy(), sample[0], other[0], limit)
     return xr.Dataset({"floor": ("model", floor), "horizon": ("model", horizon)}, {"model": models})

@@ -6,11 +6,8 @@ import numpy as np
 
 from blockshake.pages.blocks import Heading, Items, Section, Text
 from blockshake.pages.wording import count_words, given, model_label, share_words
-from blockshake.study.comparison.comparison import CHANGES
 from blockshake.study.comparison.tables import (
     in_millimetres,
-    of_tops,
-    other_settings,
     other_settings_table,
     pairs_table,
     scores_table,
@@ -35,8 +32,7 @@ def models(content):
         pairs_table(content),
     ]
     if (prices := other_settings_table(content)) is not None:
-        words = tuple(_settings_words(content, model) for model in other_settings(content))
-        blocks += [Heading("One solver with other settings", "settings"), Items(words), prices]
+        blocks += [Heading("One solver with other settings", "settings"), prices]
     if (helped := two_levels_table(content)) is not None:
         blocks += [Heading("Mean displacement of few samples, with the help of many", "two-levels"), helped]
     scores = scores_table(content)
@@ -73,18 +69,6 @@ def case_words(case):
             f"({in_millimetres(distance[far])} mm)."
         )
     return words
-
-
-def _settings_words(content, model):
-    """Of how many top blocks the settings of a model are shown to change what, in a sentence."""
-    shown, tops = [], of_tops(content, [model])
-    changes = [case.differences.sel(model=model, marker=marker) for case, (_, marker), _ in tops]
-    for name in CHANGES:
-        limits = [one[f"{name}_change_interval"].to_numpy() for one in changes]
-        known = [one for one in limits if np.isfinite(one).all()]
-        beyond = sum(one.prod() > 0.0 for one in known)
-        shown.append(f"{name} of {share_words(beyond, len(known))}")
-    return f"{model_label(model)}: top blocks of which the limits of a change leave out zero: {', '.join(shown)}."
 
 
 def _both(pair):

@@ -114,18 +114,14 @@ def two_levels_table(content):
     )  # fmt: skip
 
 
-def other_settings(content):
-    """Models of a study that have settings of their own beside the model of their solver's name, a list of str."""
-    models = content.study["models"]
-    return [model for model in models if model != (plain := solver_of(model).name) and plain in models]
-
-
 def other_settings_table(content):
     """Changes by other settings of a solver at the top block of every leaf; None where no model has any."""
-    if not other_settings(content):
+    models, rows = content.study["models"], []
+    others = [model for model in models if model != (plain := solver_of(model).name) and plain in models]
+    if not others:
         return None
-    rows = []
-    for case, (body, marker), model in of_tops(content, other_settings(content)):
+    tops = [(case, top) for case in content.cases.values() for top in top_markers(case.structure).items()]
+    for (case, (body, marker)), model in product(tops, others):
         plain, own = solver_of(model).name, case.differences.sel(marker=marker, model=model)
         pairs = (
             (_shown(case, plain, name, marker, alone=True), limited(own, f"{name}_change", millimetres))
@@ -145,12 +141,6 @@ def other_settings_table(content):
         tuple(rows),
         "llrrrrrrr",
     )
-
-
-def of_tops(content, models):
-    """Cases, the top block of each of their leaves with its marker, and models: tuples."""
-    for case in content.cases.values():
-        yield from product([case], top_markers(case.structure).items(), models)
 
 
 def scores_table(content):

@@ -1,8 +1,7 @@
 """Mean of few runs of a costly model, helped by many of a cheap one: a control variate."""
 
-from typing import NamedTuple
-
 import numpy as np
+import pandas as pd
 import scipy
 import xarray as xr
 
@@ -10,33 +9,11 @@ from blockshake.dynamics.system import Status
 from blockshake.statistics.intervals import CONFIDENCE, SURE_FROM
 
 CHEAP = "nscd-rigid"
-
-
-class TwoLevelMean(NamedTuple):
-    """Mean of a costly model's results.
-
-    Attributes
-    ----------
-    value, lower, upper : float
-        Mean with limits of 95 %, in the unit of the results.
-    coefficient : float
-        By which a deviation of the cheap model's mean is taken over [1].
-    correlation : float
-        Of the results of both models [1].
-    gain : float
-        Variance of the mean of the costly results alone, over that of the value [1].
-    """
-
-    value: float
-    lower: float
-    upper: float
-    coefficient: float
-    correlation: float
-    gain: float
+_TOLD = ("value", "lower", "upper", "coefficient", "correlation", "gain")
 
 
 def two_level_mean(costly, cheap, many):
-    """`TwoLevelMean` of results.
+    """Mean of a costly model's results, helped by a cheap one.
 
     Parameters
     ----------
@@ -47,8 +24,11 @@ def two_level_mean(costly, cheap, many):
 
     Returns
     -------
-    TwoLevelMean
-        NaN where the results of either model do not vary, or are too few.
+    dict of str to float
+        ``value``, the mean, with the limits of 95 % ``lower`` and ``upper``, in the unit of the results; the
+        ``coefficient`` by which a deviation of the cheap model's mean is taken over, ``correlation`` of the results of
+        both models, and ``gain``, the variance of the mean of the costly results alone over that of the value [1]. NaN
+        where the results of either model do not vary, or are too few.
 
     Notes
     -----
@@ -58,9 +38,9 @@ def two_level_mean(costly, cheap, many):
     conditional one, which knows that the coefficient is estimated; the limits are Student's with n - 2 degrees of
     freedom. The bias is of the order 1 / n.
     """
-    size, nothing = len(costly), TwoLevelMean(*np.full(6, np.nan))
+    size = len(costly)
     if size < SURE_FROM or np.ptp(costly) == 0.0 or np.ptp(cheap) == 0.0:
-        return nothing
+        return dict.fromkeys(_TOLD, np.nan)
     centred, off = cheap - cheap.mean(), many.mean() - cheap.mean()
     squares = centred @ centred
     coefficient = centred @ costly / squares
@@ -71,7 +51,8 @@ def two_level_mean(costly, cheap, many):
     half = scipy.stats.t.ppf(0.5 + 0.5 * CONFIDENCE, size - 2) * np.sqrt(variance)
     gain = own / size / variance if variance > 0.0 else np.inf
     correlation = np.corrcoef(costly, cheap)[0, 1]
-    return TwoLevelMean(*map(float, (value, value - half, value + half, coefficient, correlation, gain)))
+    told = value, value - half, value + half, coefficient, correlation, gain
+    return dict(zip(_TOLD, map(float, told), strict=True))
 
 
 def two_levels(ensembles):
@@ -94,18 +75,23 @@ def two_levels(ensembles):
         model: one["peak"].sel(frame="slab", drop=True).max("marker").where(one["status"] == Status.COMPLETED)
         for model, one in ensembles.items()
     }
-    rows = np.full((len(peaks), 7), np.nan)
-    for row, own in zip(rows, peaks.values(), strict=True):
-        many = peaks.get(CHEAP)
-        if many is None or own.sizes["sample"] >= many.sizes["sample"]:
-            continue
-        both = [one.sel(sample=own["sample"]).to_numpy() for one in (own, many)]
-        if np.isfinite(own).all() and np.isfinite(many).all():
-            row[:] = both[0].mean(), *two_level_mean(*both, many.to_numpy())
-    names = ("mean_peak", "two_level_peak", "coefficient", "peak_correlation", "variance_gain")
-    result = xr.Dataset(
-        {name: ("model", rows[:, place]) for name, place in zip(names, (0, 1, 4, 5, 6), strict=True)}
-    )
-    return result.assign(two_level_peak_interval=(("bound", "model"), rows[:, 2:4].T)).assign_coords(
-        bound=["lower", "upper"]
+    many, rows = peaks.get(CHEAP), []
+    for own in peaks.values():
+        helped = many is not None and own.sizes["sample"] < many.sizes["sample"]
+        row = {}
+        if helped and np.isfinite(own).all() and np.isfinite(many).all():
+            both = [one.sel(sample=own["sample"]).to_numpy() for one in (own, many)]
+            row = {"mean": both[0].mean(), **two_level_mean(*both, many.to_numpy())}
+        rows.append(row)
+    told = pd.DataFrame(rows, columns=["mean", *_TOLD], dtype=float)
+    return xr.Dataset(
+        {
+            "mean_peak": ("model", told["mean"]),
+            "two_level_peak": ("model", told["value"]),
+            "two_level_peak_interval": (("bound", "model"), told[["lower", "upper"]].T),
+            "coefficient": ("model", told["coefficient"]),
+            "peak_correlation": ("model", told["correlation"]),
+            "variance_gain": ("model", told["gain"]),
+        },
+        {"bound": ["lower", "upper"]},
     )

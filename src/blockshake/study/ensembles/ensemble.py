@@ -167,6 +167,19 @@ def relative_to_slab(displacement, slab_marker):
     return relative
 
 
+def moving_markers(ensemble):
+    """Markers of an ensemble but that of the slab, a list of str."""
+    slab = ensemble.attrs["slab_marker"]
+    return [str(name) for name in ensemble["marker"].values if name != slab]
+
+
+def block_curves(ensemble):
+    """Displacement of `moving_markers` along x relative to the slab, float64 (n_samples, n_times, n_markers) [m]."""
+    moved = ensemble["marker_displacement"].sel(axis="x", drop=True)
+    along = relative_to_slab(moved, ensemble.attrs["slab_marker"])
+    return along.sel(marker=moving_markers(ensemble)).transpose(..., "time", "marker").to_numpy()
+
+
 def in_frames(displacement, slab_marker):
     """Displacement with a first dimension ``frame``: ``inertial`` as given, ``slab`` relative to it."""
     frames = [displacement, relative_to_slab(displacement, slab_marker)]
@@ -208,10 +221,12 @@ def describe(dataset, described):
     ----------
     dataset : xarray.Dataset
     described : dict of str to (str, str)
-        Long name and unit, by variable.
+        Long name and unit, by variable. ``NAME_interval``, where it is there, has the limits of ``NAME``.
     """
     for name, (long_name, units) in described.items():
         dataset[name].attrs = {"long_name": long_name, "units": units}
+        if f"{name}_interval" in dataset:
+            dataset[f"{name}_interval"].attrs = {"long_name": f"limits of the {long_name}", "units": units}
 
 
 def measured_curves(test, slab_marker, duration):

@@ -98,9 +98,8 @@ def envelope(ensemble, largest_drift, displacement=None):
     failed = ensemble.sizes["sample"] - counted.sizes["sample"]
     probabilities = xr.DataArray(list(QUANTILES), dims="quantile", coords={"quantile": list(QUANTILES)})
     bounds = xr.DataArray(list(BOUNDS.values()), dims="bound", coords={"bound": list(BOUNDS)})
-    edges, quantiles, moving, known = _over_markers(
-        counted, displacement or _held(ensemble), bounds, probabilities
-    )
+    read = displacement or (lambda markers: ensemble["marker_displacement"].sel(marker=markers))
+    edges, quantiles, moving, known = _over_markers(counted, read, bounds, probabilities)
     result = xr.Dataset(
         {
             "marker_envelope": edges,
@@ -128,11 +127,6 @@ def envelope(ensemble, largest_drift, displacement=None):
         "confidence": CONFIDENCE,
     }
     return result
-
-
-def _held(ensemble):
-    """Displacement of some markers of an ensemble that holds the histories."""
-    return lambda markers: ensemble["marker_displacement"].sel(marker=markers)
 
 
 def _over_markers(counted, displacement, bounds, probabilities):
@@ -181,13 +175,8 @@ def _probabilities(counted, failed, largest_drift):
         "drift": f"a displacement along x of more than {largest_drift:g} m from the slab",
     }
     for name, event in what.items():
-        variable = f"{name}_probability"
-        described = {
-            variable: (f"share of the samples with {event}", "1"),
-            f"{variable}_interval": (f"Clopper-Pearson limits of the probability of {event}", "1"),
-        }
-        describe(result, described)
-        result[variable].attrs["ancillary_variables"] = f"{variable}_interval"
+        describe(result, {f"{name}_probability": (f"share of the samples with {event}", "1")})
+        result[f"{name}_probability"].attrs["ancillary_variables"] = f"{name}_probability_interval"
     result["drift_probability"].attrs["largest_drift"] = float(largest_drift)
     return result
 
@@ -198,11 +187,9 @@ def _intervals(counted, probabilities):
     for name in _SINGLE:
         values = counted[name].transpose("sample", ...)
         limits = quantile_interval(values.to_numpy(), probabilities.to_numpy())
-        result[f"{name}_interval"] = (("bound", "quantile", *values.dims[1:]), limits)
-        result[f"{name}_interval"].attrs = {
-            "long_name": f"limits by order statistics of the quantiles of {name.replace('_', ' ')}",
-            "units": counted[name].attrs["units"],
-        }
+        words = f"limits by order statistics of the quantiles of {name.replace('_', ' ')}"
+        attributes = {"long_name": words, "units": counted[name].attrs["units"]}
+        result[f"{name}_interval"] = (("bound", "quantile", *values.dims[1:]), limits, attributes)
     return result
 
 

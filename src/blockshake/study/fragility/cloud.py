@@ -242,9 +242,7 @@ def cloud_of_case(samples, case, seed, largest_drift):
         result[name] = ("fit", *dims), np.stack(values)
         result[f"{name}_interval"] = ("fit", "bound", *dims), np.stack(limits)
     unit = "m/s" if drawn.intensity.measure == "pgv" else "m/s2"
-    described = {name: (words, _UNITS.get(name, unit)) for name, words in _DESCRIBED.items()}
-    described |= {f"{name}_interval": (f"limits of the {name}", described[name][1]) for name in ESTIMATES}
-    describe(result, described)
+    describe(result, {name: (words, _UNITS.get(name, unit)) for name, words in _DESCRIBED.items()})
     result.attrs = {
         "title": "fragility over the intensity of drawn motions",
         "measure": drawn.intensity.measure,

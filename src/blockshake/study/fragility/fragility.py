@@ -21,17 +21,12 @@ ESTIMATES = {
 _DESCRIBED = {
     "known": ("samples of which it is known whether they pass this scale", "1"),
     "share": ("share of these that do not pass it, or did not pass a lower one", "1"),
-    "share_interval": ("Clopper-Pearson limits of that probability", "1"),
     "peak": ("largest displacement of the mass centre of a block from the slab, samples that climbed", "m"),
     "fine_scale": ("factor of the motion", "1"),
     "curve": ("probability of a capacity below that factor, lognormal", "1"),
-    "curve_interval": ("limits of it by likelihood", "1"),
     "median": ("median capacity, factor of the motion", "1"),
-    "median_interval": ("limits of it by likelihood", "1"),
     "dispersion": ("standard deviation of the logarithm of the capacity", "1"),
-    "dispersion_interval": ("limits of it by likelihood", "1"),
     "safe_scale": (f"factor that {100.0 * SAFE:g} % of the capacities are below", "1"),
-    "safe_scale_interval": ("limits of it by likelihood", "1"),
 }
 
 

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from blockshake.pages.blocks import Figure, Items, Section, Table, Text
+from blockshake.pages.blocks import Figure, Items, Section, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.wording import (
-    MISSING,
     SQUARED,
     count_words,
     given,
+    limited,
     millimetres,
     model_label,
     number,
@@ -20,8 +20,6 @@ from blockshake.study.ensembles.outcomes import count_outcomes
 from blockshake.study.fragility.cloud_section import cloud_blocks
 from blockshake.study.fragility.figure import measure_words, plot_fragility
 from blockshake.study.fragility.fragility import SAFE
-
-_SHOWN_SHARES = (0.5, 0.95)
 
 
 def fragility(content):
@@ -56,11 +54,12 @@ def _climbs(content):
         Items(tuple(words(content, name) for name in content.fragility)),
         Figure(
             "Largest displacement of the mass centre of any block from the slab, up to twice the one that counts as a "
-            "potential collapse, and probability of such a collapse, by the factor of the motion. Dotted: "
-            f"{percent(SAFE)} %.",
+            "potential collapse, and probability of such a collapse, by the factor of the motion. Its limits of 95 % "
+            "are those of Clopper and Pearson, and hold either outcome of samples whose run ended for a numerical "
+            f"reason. Dotted: {percent(SAFE)} %. The numbers of every level are in "
+            f"results/{content.study['name']}/fragility.",
             svg_of(plot_fragility, content.fragility),
         ),
-        _table(content),
     ]
 
 
@@ -95,16 +94,18 @@ def words(content, name):
             f"{who}: all capacities lie between {given(low)} and {given(high)} times the motion ({number(low * unit)} "
             f"and {number(high * unit)} {measure}). The levels are too far apart to tell more.{less}"
         )
-    if float(result["dispersion"]) < _smallest_known(result):
+    # of a uniform spread over one step of the scales
+    smallest_known = float(result["scale"][1] - result["scale"][0]) / median / np.sqrt(12.0)
+    if float(result["dispersion"]) < smallest_known:
         less += (
             " The capacities differ by less than the levels are apart: the dispersion, and with it the factor that "
             f"{percent(SAFE)} % are below, is bounded by the level below alone."
         )
     return (
-        f"{who}: half of the capacities are below {_limited(result, 'median')} times the motion "
-        f"({number(median * unit)} {measure}), {percent(SAFE)} % below {_limited(result, 'safe_scale')} "
+        f"{who}: half of the capacities are below {limited(result, 'median')} times the motion "
+        f"({number(median * unit)} {measure}), {percent(SAFE)} % below {limited(result, 'safe_scale')} "
         f"({number(float(result['safe_scale']) * unit)} {measure}); limits of {quantile_percent(CONFIDENCE)} in "
-        f"brackets. Dispersion: {_limited(result, 'dispersion')}.{less}"
+        f"brackets. Dispersion: {limited(result, 'dispersion')}.{less}"
     )
 
 
@@ -115,46 +116,3 @@ def _unit(content, case):
         return content.motions[case.motion].attrs["peak_acceleration"], f"m/s{SQUARED}"
     name, unit = measure_words(clouds[0])
     return case.settings["intensity"]["levels"][0], f"{unit}, {name}"
-
-
-def _smallest_known(result):
-    """Dispersion of capacities below which a step of the scales hides it: of a uniform spread over one step [1]."""
-    return float(result["scale"][1] - result["scale"][0]) / float(result["median"]) / np.sqrt(12.0)
-
-
-def _limited(result, name):
-    limits = result[f"{name}_interval"].sel(bound=["lower", "upper"])
-    if not np.isfinite(limits).all():
-        return "a factor of which the samples bear no limits"
-    return f"{number(result[name])} [{', '.join(map(number, limits))}]"
-
-
-def _table(content):
-    rows = []
-    for name, result in content.fragility.items():
-        case = content.cases[name]
-        unit, measure = _unit(content, case)
-        for scale in result["scale"].values:
-            at = result.sel(scale=scale)
-            peaks = " / ".join(millimetres(at["peak"].sel(quantile=share)) for share in _SHOWN_SHARES)
-            known = int(at["known"])
-            climbed = int(at["passed"].notnull().sum())
-            low, high = (percent(at["share_interval"].sel(bound=side)) for side in ("lower", "upper"))
-            rows.append((
-                name, given(scale), f"{number(scale * unit)} {measure}", str(climbed),
-                f"{percent(at['share'])} [{low}, {high}] of {known}" if known else MISSING,
-                peaks if climbed else MISSING,
-            ))  # fmt: skip
-    quantiles = " / ".join(map(quantile_percent, _SHOWN_SHARES))
-    return Table(
-        "Levels that the samples climbed. Not passed: share that does not pass this level, or did not pass a lower "
-        "one, of the samples of which this is known, whose number stands behind. Clopper-Pearson limits of 95 % in "
-        "brackets hold either outcome of the other samples, whose run ended for a numerical reason. Displacement: the "
-        f"largest of the mass centre of any block from the slab, quantiles {quantiles} over the samples that climbed "
-        "this level.",
-        (
-            "Case", "Factor", "Peak acceleration, or measure", "Climbed", "Not passed [%]",
-            f"Displacement, {quantiles} [mm]",
-        ),
-        tuple(rows), "lrrrrr",
-    )  # fmt: skip

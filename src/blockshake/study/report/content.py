@@ -13,7 +13,7 @@ from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.sensors import markers
 from blockshake.pages.origin import software_versions
 from blockshake.store import load_made
-from blockshake.study.analyses import ANALYSES, is_of_the_paper
+from blockshake.study.analyses import ANALYSES, OF_THE_PAPER
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.ensemble import measured_curves
 from blockshake.study.sampling.distributions import load_distributions
@@ -91,7 +91,7 @@ class ReportedCase:
     @property
     def is_shipped(self):
         """Whether the structure is one of the paper's, by its name."""
-        return is_of_the_paper(self.settings["structure"])
+        return self.settings["structure"] in OF_THE_PAPER
 
 
 @dataclass(frozen=True)

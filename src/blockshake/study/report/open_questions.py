@@ -76,14 +76,10 @@ def next_steps(content, found):
             history = cases[name].responses[model].sensitivity.sel(quantity="history", marker=one.marker)
             # a spread below a marker's noise needs no explanation
             seen = float(history["spread"]) >= cases[name].marker_noise
-            if (
-                seen
-                and is_known(history, "first_order")
-                and (beyond := influences(history, "first_order").beyond_chance)
-            ):
-                by_variable.setdefault(beyond[0].parameter, []).append(
-                    (beyond[0].value, one.block, name, model)
-                )
+            if seen and is_known(history, "first_order"):
+                first = influences(history, "first_order")[0]
+                if first.beyond_chance:
+                    by_variable.setdefault(first.parameter, []).append((first.value, one.block, name, model))
     for parameter, shares in sorted(by_variable.items(), key=lambda item: -max(item[1])[0])[:1]:
         value, block, name, model = max(shares)
         steps.append(

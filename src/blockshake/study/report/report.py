@@ -33,8 +33,8 @@ _SECTIONS = (
 )
 
 
-def make_report(study, results, html, pdf):
-    """Write the report of a finished study.
+def make_report(study, results, html, pdf, case=None):
+    """Write the report of a finished study, or of one of its cases.
 
     Parameters
     ----------
@@ -44,19 +44,14 @@ def make_report(study, results, html, pdf):
         Folder of its results.
     html, pdf : str or path
         To write, each whole or not at all. Same results, same bytes.
+    case : str, optional
+        Name of the case that is reported alone, from its own results.
 
     Raises
     ------
     InputError
         A results file is missing or holds something else.
     """
-    document = compose(load_content(study, results))
-    write_html(html, document)
-    write_pdf(pdf, document)
-
-
-def make_case_report(study, case, results, html, pdf):
-    """Write the report of one case of a study, from the results of this case alone; parameters as in `make_report`."""
     document = compose(load_content(study, results, case))
     write_html(html, document)
     write_pdf(pdf, document)

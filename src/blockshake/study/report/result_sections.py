@@ -6,19 +6,24 @@ from blockshake.pages.blocks import Figure, Heading, Section, Table, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.rows import face_markers
 from blockshake.pages.wording import (
+    MISSING,
     SHOWN_QUANTILES,
     given,
     model_label,
     number,
     percent,
+    quantile_percent,
     quantile_range,
     share_words,
 )
+from blockshake.simulation.run_histories import RARELY
 from blockshake.study.comparison.tables import block_tables
 from blockshake.study.ensembles.displacement_figure import plot_displacements
-from blockshake.study.report.joints_table import joints_table
 from blockshake.study.report.moving import moving_samples, plot_still, usual_magnification
 from blockshake.study.sensitivity.findings import quiet_markers
+
+_HIGH = 0.95  # quantile of the figures of joints
+_OF_JOINTS = {"joint_compression": 1e-3, "joint_uplift": 1e3, "joint_slip": 1e3}  # factors from SI
 
 
 def responses(content):
@@ -131,3 +136,33 @@ def coverage_table(case):
         ("Block", "Model", f"Coverage of the {word} [%]", "Reference, leave one out [%]", "Distance", "Chance"),
         tuple(rows), "llrrrr",
     )  # fmt: skip
+
+
+def joints_table(case):
+    """Table of a case's joints, in a list; an empty one where no sample of any model has a result."""
+    envelopes = {
+        model: one.envelope for model, one in case.responses.items() if int(one.envelope.attrs["counted"])
+    }
+    if not envelopes:
+        return []
+    rows = [
+        (str(joint), *(_joint_cell(one.sel(joint=joint, quantile=_HIGH)) for one in envelopes.values()))
+        for joint in reversed(next(iter(envelopes.values()))["joint"].values)
+    ]
+    labels = (f"{model_label(model)} (n = {int(one.attrs['counted'])})" for model, one in envelopes.items())
+    return [
+        Table(
+            f"{case.name}: compression [kN] / uplift [mm] / slip [mm] of the joints from the top down, "
+            f"{quantile_percent(_HIGH)} quantile over the samples that did not fail. Compression: normal force that "
+            f"is exceeded for {100.0 * RARELY:g} % of the time, so that it leaves impacts out; uplift and slip: the "
+            "largest at the middle of the face.",
+            ("Joint", *labels),
+            tuple(rows),
+            "l" + "r" * len(envelopes),
+        )
+    ]
+
+
+def _joint_cell(at):
+    shown = [factor * float(at[name]) for name, factor in _OF_JOINTS.items()]
+    return " / ".join(map(number, shown)) if np.isfinite(shown).all() else MISSING

@@ -49,18 +49,15 @@ def arrange(columns, target, seed, effort):
     for stream in streams[1:]:
         bits = np.random.PCG64(stream)
         order[:] = best
-        scores = _placed(standard, order)
-        temperature = _first_temperature(n_samples, n_variables)
+        scores = np.ascontiguousarray(np.take_along_axis(standard, order, axis=0))
+        # a third of the typical change of the error by one swap: leaves a local minimum, keeps the start
+        temperature = 0.3 / (n_samples * np.sqrt(n_variables))
         for _ in range(_LEVELS):
             trials = _draw_trials(bits, n_trials, n_samples, n_variables)
             found = anneal_level(target, *trials, temperature, least, scores, order, best)
             least = min(least, found)
             temperature *= _COOLING
     return best
-
-
-def _placed(standard, order):
-    return np.ascontiguousarray(np.take_along_axis(standard, order, axis=0))
 
 
 def _first_order(standard, target, stream):
@@ -74,11 +71,6 @@ def _first_order(standard, target, stream):
     wanted = shuffled @ np.linalg.cholesky(target).T
     ranks = np.argsort(np.argsort(wanted, axis=0, kind="stable"), axis=0, kind="stable")
     return np.take_along_axis(np.argsort(standard, axis=0, kind="stable"), ranks, axis=0)
-
-
-def _first_temperature(n_samples, n_variables):
-    """A third of the typical change of the error by one swap [1]: leaves a local minimum, keeps the start."""
-    return 0.3 / (n_samples * np.sqrt(n_variables))
 
 
 def _draw_trials(bits, n_trials, n_samples, n_variables):

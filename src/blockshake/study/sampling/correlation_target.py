@@ -83,13 +83,9 @@ def check_correlation(matrix, names, where):
     for i, name in enumerate(names):
         if abs(matrix[i, i] - 1.0) > _ROUNDING:
             raise InputError(where, f"{name}, {name}", f"expected 1 on the diagonal, not {matrix[i, i]:g}")
-        for j in range(i):
-            if abs(matrix[i, j] - matrix[j, i]) > _ROUNDING:
-                raise InputError(
-                    where,
-                    f"{name}, {names[j]}",
-                    f"expected a symmetric matrix; {matrix[i, j]:g} is {matrix[j, i]:g} across the diagonal",
-                )
+        for j in np.flatnonzero(np.abs(matrix[i, :i] - matrix[:i, i]) > _ROUNDING):
+            wrong = f"expected a symmetric matrix; {matrix[i, j]:g} is {matrix[j, i]:g} across the diagonal"
+            raise InputError(where, f"{name}, {names[j]}", wrong)
     smallest = np.linalg.eigvalsh(matrix)[0]
     if smallest < _SMALLEST_EIGENVALUE:
         raise InputError(

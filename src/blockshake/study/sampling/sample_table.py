@@ -11,9 +11,7 @@ from blockshake.tables.table_file import csv_records
 
 def write_design(path, values):
     """Write a design as CSV: one row a sample, columns the dotted names, every digit, atomically."""
-    lines = [",".join(values.columns)]
-    lines += [",".join(repr(float(value)) for value in row) for row in values.to_numpy()]
-    write_text(path, "\n".join(lines) + "\n")
+    write_text(path, values.to_csv(index=False, lineterminator="\n"))
 
 
 def load_design(path):

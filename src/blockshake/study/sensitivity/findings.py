@@ -9,6 +9,15 @@ from blockshake.pages.wording import millimetres, number, parameter_label, perce
 
 SHARED = 0.05  # r squared of two variables beyond which they are said to share their indices
 _TOLD = 3  # pairs of such variables
+_WORDS = {
+    "first_order": (
+        "Shown to explain some of that by itself:", "No variable is shown to explain any of that by itself", "share",
+    ),
+    "rank_correlation": (
+        "By partial rank correlation the peak follows", "No variable is shown to steer the peak",
+        "partial rank correlation",
+    ),
+}  # fmt: skip
 
 
 class Influence(NamedTuple):
@@ -33,18 +42,6 @@ class Influence(NamedTuple):
     beyond_chance: bool
 
 
-class Influences(NamedTuple):
-    """Variables from the strongest down, and the level of chance [1]."""
-
-    ranked: tuple
-    chance: float
-
-    @property
-    def beyond_chance(self):
-        """Variables that stand out, from the strongest down."""
-        return tuple(one for one in self.ranked if one.beyond_chance)
-
-
 def differs(result, noise):
     """Whether samples of a `sensitivity` differ by at least a marker's noise [m], a standard deviation.
 
@@ -59,7 +56,7 @@ def is_known(result, measure):
 
 
 def influences(result, measure):
-    """`Influences`: variables of a `sensitivity` ranked by a measure, at one marker and for one quantity that is known.
+    """List of `Influence` of a `sensitivity`, the strongest first, at one marker and for one quantity that is known.
 
     ``first_order``, ranked by the share, which is noise where negative; or ``rank_correlation``, by its magnitude.
     """
@@ -68,14 +65,13 @@ def influences(result, measure):
     lower, upper = (result[f"{measure}_interval"].sel(bound=one).to_numpy() for one in ("lower", "upper"))
     order = np.argsort(-strength, kind="stable")
     names, controls = result["parameter"].values, result["control"].values
-    ranked = (
+    return [
         Influence(
             str(names[index]), bool(controls[index]), *map(float, (values[index], lower[index], upper[index])),
             bool(strength[index] > chance),
         )
         for index in order
-    )  # fmt: skip
-    return Influences(tuple(ranked), chance)
+    ]  # fmt: skip
 
 
 def shared_words(result):
@@ -122,9 +118,8 @@ def sentence(result, body, marker, noise):
             f"the samples of {body} differ by {number(1e3 * history['spread'], 2)} mm {spread}, less than the noise of "
             "a marker: the envelope is a line and there is nothing to explain."
         )
-    words = (
-        f"the samples of {body} differ by {millimetres(history['spread'])} mm {spread}. {_explained(history)}"
-    )
+    thick = f"the samples of {body} differ by {millimetres(history['spread'])} mm {spread}."
+    words = f"{thick} {_found(history, 'first_order')}"
     peak = result.sel(quantity="peak", marker=marker)
     if not is_known(peak, "rank_correlation"):
         return (
@@ -133,31 +128,18 @@ def sentence(result, body, marker, noise):
     explained = float(peak["explained"])
     share = f"{percent(explained)} %" if explained > 0.0 else "nothing"
     return (
-        f"{words} {_steered(peak)} All variables together explain {share} of the ranks of the peak "
+        f"{words} {_found(peak, 'rank_correlation')} All variables together explain {share} of the ranks of the peak "
         f"(adjusted R\N{SUPERSCRIPT TWO} {explained:.2f})."
     )
 
 
-def _explained(history):
-    answer = influences(history, "first_order")
-    named = ", then ".join(map(influence_words, answer.beyond_chance))
-    if named:
-        return f"Shown to explain some of that by itself: {named}; level of chance {answer.chance:.2f}."
-    return (
-        "No variable is shown to explain any of that by itself: the largest share, "
-        f"{influence_words(answer.ranked[0])}, is within the level of chance, {answer.chance:.2f}."
-    )
-
-
-def _steered(peak):
-    answer = influences(peak, "rank_correlation")
-    named = ", then ".join(map(influence_words, answer.beyond_chance))
-    if named:
-        return f"The peak follows {named} (partial rank correlation; level of chance {answer.chance:.2f})."
-    return (
-        "No variable is shown to steer the peak: the largest partial rank correlation, "
-        f"{influence_words(answer.ranked[0])}, is within the level of chance, {answer.chance:.2f}."
-    )
+def _found(result, measure):
+    """Variables whose measure is beyond chance, or the largest measure where there is none, in a sentence."""
+    ranked, (shown, hidden, noun) = influences(result, measure), _WORDS[measure]
+    chance = f"{float(result[f'{measure}_chance']):.2f}"
+    if named := ", then ".join(influence_words(one) for one in ranked if one.beyond_chance):
+        return f"{shown} {named}; level of chance {chance}."
+    return f"{hidden}: the largest {noun}, {influence_words(ranked[0])}, is within the level of chance, {chance}."
 
 
 def influence_words(one):

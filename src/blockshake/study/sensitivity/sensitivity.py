@@ -5,12 +5,18 @@ import scipy
 import xarray as xr
 
 from blockshake.dynamics.system import Status
-from blockshake.errors import InputError
 from blockshake.files import content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.statistics.intervals import CONFIDENCE
 from blockshake.statistics.resampling import DRAWS, bootstrap_interval, chance_level
-from blockshake.study.ensembles.ensemble import ALONG_X, POSES, describe, join_batches, relative_to_slab
+from blockshake.study.ensembles.ensemble import (
+    ALONG_X,
+    POSES,
+    block_curves,
+    describe,
+    join_batches,
+    moving_markers,
+)
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.sampling.sample_parameters import sample_parameters, unused_variables
 from blockshake.study.sampling.sample_table import load_design
@@ -80,11 +86,6 @@ def sensitivity(ensemble, variables, controls=()):
         relative to the slab's along x: ``history``, the displacement at all times together, and ``peak``. A history
         has no rank correlation.
 
-    Raises
-    ------
-    InputError
-        A variable that the ensemble does not hold.
-
     Notes
     -----
     Samples that failed are left out. One that collapsed or still falls ranks first: its peak is at least the
@@ -92,13 +93,7 @@ def sensitivity(ensemble, variables, controls=()):
     Variables are taken as independent; of correlated ones the index holds what they carry of each other. The share of
     a history weighs each time by the variance there: it says what the envelope's thickness over time comes from.
     """
-    names = [str(name) for name in ensemble["parameter"].values]
-    for variable in variables:
-        if variable not in names:
-            raise InputError("sensitivity", variable, "expected a parameter of the ensemble")
     counted = counted_samples(ensemble)
-    slab = str(ensemble.attrs["slab_marker"])
-    markers = [str(name) for name in ensemble["marker"].values if name != slab]
     inputs = counted["parameter_value"].sel(parameter=variables).transpose("sample", "parameter").to_numpy()
     seed = int(
         content_digest("sensitivity", *(str(ensemble.attrs.get(key)) for key in ("model", "structure"))), 16
@@ -106,7 +101,7 @@ def sensitivity(ensemble, variables, controls=()):
     generator = np.random.default_rng(seed)
     parts = []
     for quantity in QUANTITIES:
-        values = _outputs(counted, quantity, markers, slab)
+        values = _outputs(counted, quantity)
         used = np.isfinite(values).all(axis=(1, 2))
         parts.append(_measured(inputs[used], values[used], quantity == "history", generator))
     result = xr.concat(parts, dim=xr.Variable("quantity", list(QUANTITIES)))
@@ -116,30 +111,27 @@ def sensitivity(ensemble, variables, controls=()):
     known = np.corrcoef(scipy.stats.rankdata(completed, axis=0), rowvar=False) if enough else np.nan
     result["correlation"] = (("parameter", "other"), np.broadcast_to(known, 2 * (len(variables),)))
     return _described(
-        result.assign_coords(other=variables, marker=markers, parameter=variables), ensemble, counted, seed
+        result.assign_coords(other=variables, marker=moving_markers(ensemble), parameter=variables),
+        ensemble,
+        counted,
+        seed,
     )
 
 
-def _outputs(counted, quantity, markers, slab):
-    """Values of one quantity, float64 (n_samples, n_markers, n_components); NaN where a sample has none."""
+def _outputs(counted, quantity):
+    """Values of one quantity, float64 (n_samples, n_markers, n_components); NaN where a sample has none.
+
+    A sample that did not complete has no history.
+    """
     completed = counted["status"].values == Status.COMPLETED
     if quantity == "history":
-        return principal_components(completed_histories(counted, markers, slab))
-    values = counted[quantity].sel(frame="slab", marker=markers).transpose("sample", "marker").to_numpy()
+        histories = block_curves(counted).transpose(0, 2, 1)
+        return principal_components(np.where(completed[:, None, None], histories, np.nan))
+    of_blocks = counted[quantity].sel(frame="slab", marker=moving_markers(counted))
+    values = of_blocks.transpose("sample", "marker").to_numpy()
     if completed.any():
         values = np.where(completed[:, None], values, np.fmax(values, values[completed].max(axis=0)))
     return values[:, :, None]
-
-
-def completed_histories(counted, markers, slab):
-    """Displacement along x relative to the slab's marker of completed samples, (n_samples, n_markers, n_times) [m].
-
-    ``counted`` from `counted_samples`; NaN for samples that did not complete.
-    """
-    completed = counted["status"].values == Status.COMPLETED
-    along = relative_to_slab(counted["marker_displacement"].sel(axis="x", drop=True), slab)
-    along = along.sel(marker=markers).transpose("sample", "marker", "time").to_numpy()
-    return np.where(completed[:, None, None], along, np.nan)
 
 
 def principal_components(histories):
@@ -201,9 +193,7 @@ def _described(result, ensemble, counted, seed):
     describe(result, _DESCRIBED)
     for name in _MEASURES:
         of = result[name].attrs
-        result[f"{name}_interval"].attrs = {
-            "long_name": f"bootstrap interval of the {of['long_name']}", "units": "1", "confidence": CONFIDENCE,
-        }  # fmt: skip
+        result[f"{name}_interval"].attrs["confidence"] = CONFIDENCE
         result[f"{name}_chance"].attrs = {
             "long_name": f"what the largest absolute {of['long_name']} reaches without any effect", "units": "1",
             "confidence": CONFIDENCE,

@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from blockshake.pages.blocks import Figure, Section, Table, Text
+from blockshake.pages.blocks import Figure, Section, Text
 from blockshake.pages.drawing import BLACK, BLUE, GREEN, GREY, ORANGE, RED, new_figure, svg_of
 from blockshake.pages.units import MICROMETRES, printed, quantity
 from blockshake.pages.wording import given, number, parameter_label
 from blockshake.study.sampling.distributions import parameter_unit
-from blockshake.study.stiffness.wave_speed import speed_deviation
 
 _LINES = (BLUE, GREEN, ORANGE, RED, BLACK, GREY)
 _STEP = {"normal": "vertical step: normal stiffness", "shear": "horizontal step: shear stiffness"}
@@ -34,8 +33,7 @@ def stiffness(content):
                 "dots: arrivals.",
                 svg_of(plot_waves, calibrated.waves),
             ),
-            _speeds(calibrated.waves, of),
-            _stiffness_of_samples(calibrated.stiffness, of),
+            Text(f"{_speeds(calibrated.waves)} {_stiffness_of_samples(calibrated.stiffness, of)}"),
         ]
     blocks.append(
         Text("The stiffness by other definitions of arrival and dampings: docs/guide/uncertainty.md.")
@@ -43,19 +41,15 @@ def stiffness(content):
     return Section("Contact stiffness", "stiffness", tuple(blocks))
 
 
-def _speeds(waves, of):
-    """Wave speed reached against its target at nominal parameters; ``of``: more words for the caption."""
-    rows = []
-    for direction in waves["direction"].values:
-        one = waves.sel(direction=direction)
-        rows.append((
-            str(direction), number(one["target_wave_speed"], 5), number(one["wave_speed"], 5),
-            f"{1e6 * speed_deviation(waves, direction):.0f}", quantity(float(one["stiffness"]), "N/m3", 4),
-        ))  # fmt: skip
-    return Table(
-        f"Effective wave speed at the calibrated stiffness, nominal parameters{of}.",
-        ("Direction", "Target [m/s]", "Reached [m/s]", "Difference [ppm]", "Stiffness"), tuple(rows), "lrrrr",
-    )  # fmt: skip
+def _speeds(waves):
+    """Stiffness at nominal parameters, and the wave speed that it gives against its target, in a sentence."""
+    words = [
+        f"{direction} {quantity(float(one['stiffness']), 'N/m3', 4)}, which gives {number(one['wave_speed'], 5)} of "
+        f"{number(one['target_wave_speed'], 5)} m/s"
+        for direction in waves["direction"].values
+        for one in [waves.sel(direction=direction)]
+    ]
+    return f"Stiffness at nominal parameters: {'; '.join(words)}."
 
 
 def _stiffness_of_samples(stiffness, of):
@@ -65,7 +59,7 @@ def _stiffness_of_samples(stiffness, of):
         factor, unit = printed(parameter_unit(name))
         low, mean, high = (number(factor * value) for value in (column.min(), column.mean(), column.max()))
         values.append(f"{parameter_label(name)} {low} to {high} {unit}, mean {mean}")
-    return Text(f"Stiffness per area of the {len(stiffness)} samples{of}: {'; '.join(values)}.")
+    return f"Stiffness per area of the {len(stiffness)} samples{of}: {'; '.join(values)}."
 
 
 def plot_waves(waves):

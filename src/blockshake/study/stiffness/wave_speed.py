@@ -1,7 +1,7 @@
 """Contact stiffness from wave speed: a step of velocity sent up a tower, as in the paper's Figs. 9 and 10."""
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple, TypedDict
+from typing import Any, TypedDict
 
 import numpy as np
 import pandas as pd
@@ -16,7 +16,6 @@ from blockshake.study.stiffness.tower import tower_of
 from blockshake.study.stiffness.wave_step import (
     AXES,
     STEP_VELOCITY,
-    StepTest,
     crossing,
     no_passage,
     send_step,
@@ -34,23 +33,6 @@ _MATCHED = 1e-4  # relative error of the wave speed at which the search stops
 _MOST_ROUNDS = 8
 
 
-class WaveTest(NamedTuple):
-    """One step test and the wave speed read from it.
-
-    Attributes
-    ----------
-    step : StepTest
-    arrival : float64 array, shape (n_blocks,)
-        At the blocks from the lowest up [s].
-    wave_speed : float
-        [m/s]
-    """
-
-    step: StepTest
-    arrival: np.ndarray
-    wave_speed: float
-
-
 def target_wave_speeds(structure):
     """Speeds of pressure and shear waves in the tower's material, Zhou et al. (2023), Eqs. (7), (8) [m/s].
 
@@ -66,7 +48,7 @@ def target_wave_speeds(structure):
 
 
 def measure_wave_speed(structure, parameters, direction):
-    """`WaveTest`: send one step of velocity up a tower with LS-DEM and read the effective wave speed.
+    """Send one step of velocity up a tower with LS-DEM and read the effective wave speed.
 
     Parameters
     ----------
@@ -76,16 +58,25 @@ def measure_wave_speed(structure, parameters, direction):
     direction : str
         ``normal`` (vertical step) or ``shear`` (horizontal step, rotations blocked).
 
+    Returns
+    -------
+    time, displacement, velocity
+        Of `send_step`.
+    arrival : float64 array, shape (n_blocks,)
+        At the blocks from the lowest up [s].
+    wave_speed : float
+        [m/s]
+
     Raises
     ------
     InputError
         The structure is not a single tower, or a block never reached half the step's velocity.
     """
-    test = send_step(structure, parameters, direction)
-    if not (test.velocity >= 0.5 * STEP_VELOCITY).any(axis=0).all():
+    time, displacement, velocity, height = send_step(structure, parameters, direction)
+    arrival = np.array([crossing(time, history, 0.5 * STEP_VELOCITY) for history in velocity.T])
+    if np.isnan(arrival).any():
         raise no_passage(structure, direction)
-    arrival = np.array([crossing(test.time, history, 0.5 * STEP_VELOCITY) for history in test.velocity.T])
-    return WaveTest(test, arrival, float(test.height / (arrival[-1] - arrival[0])))
+    return time, displacement, velocity, arrival, float(height / (arrival[-1] - arrival[0]))
 
 
 class Stiffness(TypedDict):
@@ -136,7 +127,7 @@ def calibrate_stiffness(structure: StructureSource, parameters: Mapping[str, Any
             numerical = LsDemParameters(
                 normal_stiffness=stiffness["normal"], shear_stiffness=stiffness["shear"]
             )
-            reached[direction] = measure_wave_speed(tower, numerical, direction).wave_speed
+            reached[direction] = measure_wave_speed(tower, numerical, direction)[-1]
             ratio = targets[direction] / reached[direction]
             if abs(ratio - 1.0) < _MATCHED:
                 break
@@ -184,12 +175,6 @@ def stiffness_parameters(calibrated):
     return {f"{_LS_DEM.prefix}.{name}": calibrated[name] for name in _LS_DEM.calibrated}
 
 
-def speed_deviation(waves, direction):
-    """Deviation of the wave speed reached from its target in a direction of `wave_tests`, over the target [1]."""
-    wave = waves.sel(direction=direction)
-    return float(wave["wave_speed"]) / float(wave["target_wave_speed"]) - 1.0
-
-
 def wave_tests(structure):
     """Histories of the step tests of a structure's tower at the stiffness calibrated for its nominal parameters.
 
@@ -210,18 +195,18 @@ def wave_tests(structure):
     blocks = [tower.body_names[body] for body in tower_blocks(tower)]
     tests = []
     for direction in AXES:
-        test = measure_wave_speed(tower, numerical, direction)
+        time, displacement, velocity, arrival, speed = measure_wave_speed(tower, numerical, direction)
         tests.append(
             xr.Dataset(
                 {
-                    "displacement": (("time", "block"), test.step.displacement, {"units": "m"}),
-                    "velocity": (("time", "block"), test.step.velocity, {"units": "m s-1"}),
-                    "arrival": ("block", test.arrival, {"units": "s"}),
+                    "displacement": (("time", "block"), displacement, {"units": "m"}),
+                    "velocity": (("time", "block"), velocity, {"units": "m s-1"}),
+                    "arrival": ("block", arrival, {"units": "s"}),
                     "stiffness": ((), calibrated[f"{direction}_stiffness"], {"units": "N m-3"}),
-                    "wave_speed": ((), test.wave_speed, {"units": "m s-1"}),
+                    "wave_speed": ((), speed, {"units": "m s-1"}),
                     "target_wave_speed": ((), calibrated["target_wave_speed"][direction], {"units": "m s-1"}),
                 },
-                coords={"time": ("time", test.step.time, {"units": "s"}), "block": blocks},
+                coords={"time": ("time", time, {"units": "s"}), "block": blocks},
             )
         )
     joined = xr.concat(tests, dim=xr.Variable("direction", list(AXES)), join="outer")
