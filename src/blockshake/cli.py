@@ -48,7 +48,7 @@ class _Parser(argparse.ArgumentParser):
             self.register("type", kind, lambda text, kind=kind: kind(text.replace("_", "no digit")))
 
     def error(self, message):
-        raise InputError(self.prog, "", message)
+        raise InputError("arguments" if self.prog == "blockshake" else self.prog, "", message)
 
 
 def main(arguments=None):

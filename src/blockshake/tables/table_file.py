@@ -85,13 +85,13 @@ class CellTable(NamedTuple):
         return values
 
     def times(self, name, size=Decimal(1)):
-        """Times of a column, float64 (n_rows,) [s], as of `column`; clocks of the day count from a midnight.
+        """Times of a column, float64 (n_rows,) [s], as of `column`; clocks of the day, which have no unit, from a midnight.
 
         The next day begins where the date changes or, without dates, where the clock falls by more than half a day.
         """
         cells = self._cells(name)
         clocks = [_CLOCK.fullmatch(str(cell).strip()) for cell in cells]
-        if size != 1 or not any(clocks):
+        if not any(clocks):
             return self.column(name, size, "time")
         if None in clocks:
             row = clocks.index(None)

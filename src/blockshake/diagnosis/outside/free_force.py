@@ -23,10 +23,9 @@ def explain_free_force(likelihood, points):
     by_size = [_with_force(likelihood, points, size) for size in _SIZES]
     evidence = np.array([of_size[0] for of_size in by_size])
     best = int(np.argmax(evidence))
-    columns = [of_size[:, None] for of_size in by_size[best][1]]
-    fit = Fit(
-        {"size": _SIZES[best]}, float(evidence[best]), columns, np.ones(1), np.ones(1), np.zeros((1, 1))
-    )
+    size = np.array([_SIZES[best]])
+    columns = [rows[:, None] / size for rows in by_size[best][1]]
+    fit = Fit({}, float(evidence[best]), columns, size, size, np.zeros((1, 1)))
     return Explanation("unknown-force", points.place, float(mean_evidence(evidence)), (fit,))
 
 

@@ -66,12 +66,14 @@ def campaign_lines(folder):
     ]
     if structure.file.displacement_transducers:
         lines[0] += f", of displacement transducers {campaign.sensors.transducer_noise:g} m"
-    remarks, read, named = [f"  {remark}" for remark in point_remarks(structure)], {}, set()
+    remarks, read, named, first = [f"  {remark}" for remark in point_remarks(structure)], {}, set(), {}
     for entry in campaign.tests.values():
         test = load_test(campaign, entry.name)
         kinds = [kind for kind in ("marker", "channel", "transducer") if kind in test.coords]
         read[entry.name] = [str(name) for kind in kinds for name in test[kind].values]
         named |= {(entry.name, fault.sensor) for fault in test.attrs["faulty"]}
+        same = first.setdefault(test["marker_displacement"].to_numpy().tobytes(), entry.name)
+        remarks += [f"  {entry.name}: has the readings of {same}"] if same != entry.name else []
         described = _Described(campaign, structure, entry, test)
         lines.append(f"  {entry.name} ({entry.role}): {', '.join(described.facts)}")
         remarks += [f"  {entry.name}: {remark}" for remark in described.remarks]

@@ -85,10 +85,14 @@ def _under(content, case):
 
 def _verdict(found):
     """Which cases stand, which may collapse and which do, in a sentence."""
-    sides = {"stand": [], "may": [], "fall": []}
+    sides = {"stand": [], "may": [], "fall": [], "open": []}
     for name, ended in found.items():
-        shares = [one.share for one in ended.values()]
-        sides["stand" if not any(shares) else "fall" if min(shares) == 1.0 else "may"].append(name)
+        shares, down = (
+            [one.share for one in ended.values()],
+            any(one.collapsed > one.falling for one in ended.values()),
+        )
+        side = "stand" if not any(shares) else "may" if min(shares) < 1.0 else "fall" if down else "open"
+        sides[side].append(name)
 
     def named(names, verb):
         if len(names) == 1:
@@ -107,11 +111,11 @@ def _verdict(found):
         upper, fewest = max(one.limits[1] for one in every), min(one.counted for one in every)
         words.append(
             f"{named(names, 'stand')}: none of {runs(names)} collapses; as few as {count_words(fewest, 'run')} of a "
-            f"case by a model leave a probability of up to {_whole(upper)} %"
+            f"case by a model leave a probability of a collapse of up to {_whole(upper)} %"
         )
     for name in sides["may"]:
         by = [
-            f"{share_words(one.collapsed, one.counted)} runs by {model_label(model)}"
+            f"{share_words(one.collapsed, one.counted)} runs by {model_label(model)}{_falling(one)}"
             for model, one in found[name].items()
             if one.collapsed
         ]
@@ -119,6 +123,10 @@ def _verdict(found):
         words.append(f"{name} may collapse: in {listed(by)}{others}")
     if names := sides["fall"]:
         words.append(f"{named(names, 'collapse')}: so do all {runs(names)}")
+    if names := sides["open"]:
+        words.append(
+            f"Whether {named(names, 'stand')} is not told: all {runs(names)} still fall as the window ends"
+        )
     return ". ".join(words) + "."
 
 
@@ -301,7 +309,9 @@ def _why(content, found):
                 f"{_length(float(values.max()))} mm by {label}{f' ({joint})' * (joint != joints[-1])}"
                 for values, label, joint in zip(largest, (near, far), joints, strict=True)
             ]
-            words.append(f"the largest {noun} is {' and '.join(sizes)} ({joints[-1]})")
+            words.append(
+                f"the largest {noun}, median of the samples, is {' and '.join(sizes)} ({joints[-1]})"
+            )
     return [" ".join(map(sentence_case, words))]
 
 
