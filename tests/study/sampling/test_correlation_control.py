@@ -81,10 +81,10 @@ def test_more_effort_never_gives_a_larger_error():
     assert errors[-1] < errors[0]
 
 
-@pytest.mark.parametrize("n_variables", [2, 3])
-def test_the_order_does_not_hang_on_the_last_digits_of_the_columns(n_variables):
+def test_the_order_does_not_hang_on_the_last_digits_of_the_columns():
     # few samples of few variables reach their best pairing several times, and exponentials differ between processors
     for seed in range(10):
+        n_variables = 2 + seed % 2
         columns = np.exp(_standard(seed, (10, n_variables)))
         last_digits = np.random.default_rng(seed).integers(-2, 3, columns.shape) * 2.0**-52
         one, other = (
