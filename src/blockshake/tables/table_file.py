@@ -85,9 +85,10 @@ class CellTable(NamedTuple):
         return values
 
     def times(self, name, size=Decimal(1)):
-        """Times of a column, float64 (n_rows,) [s], as of `column`; clocks of the day, which have no unit, from a midnight.
+        """Times of a column, float64 (n_rows,) [s], as of `column`; clocks of the day have no unit.
 
-        The next day begins where the date changes or, without dates, where the clock falls by more than half a day.
+        Clocks count from a midnight. The next day begins where the date changes or, without dates, where the clock
+        falls by more than half a day.
         """
         cells = self._cells(name)
         clocks = [_CLOCK.fullmatch(str(cell).strip()) for cell in cells]

@@ -70,8 +70,8 @@ def clock_remarks(time, marker, time_acc, acceleration, noise, path):
     if _IN_G[0] < abs(gain) * _GRAVITY < _IN_G[1]:
         raise InputError(
             path, "accelerometer",
-            f"expected m/s2; the slab's reads {gain:.3g} of what its markers do: it looks like g, or the markers' unit is "
-            "another",
+            f"expected m/s2; the slab's reads {gain:.3g} of what its markers do: it looks like g, or the markers have "
+            "another unit",
         )  # fmt: skip
     remarks = []
     if not _GAIN[0] < gain < _GAIN[1]:
