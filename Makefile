@@ -112,6 +112,7 @@ $(READY): requirements.lock pyproject.toml
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
 	@touch $(READY)
+	@echo "Ready: $(BIN)/blockshake --help, or make quick"
 
 lint: setup
 	$(BIN)/ruff check .

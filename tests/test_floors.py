@@ -60,7 +60,7 @@ MOST_LINES = {
     "own_files": 1172, "cost": 294, "diagnosis/flight": 1246, "diagnosis/outcomes": 916,
     "diagnosis/planning": 569, "study/extension": 321,
 }  # fmt: skip
-MOST_LINES_TOGETHER = 53_419
+MOST_LINES_TOGETHER = 53_435
 
 
 def place(name, floors):

@@ -373,8 +373,10 @@ def _generate_campaign(options):
 
 
 def _study(options):
+    from blockshake.own_files.check import check
     from blockshake.own_files.run_study import run_study
 
+    print(f"{options.file}: {check(options.file)}", flush=True)
     run_study(options.file, options.output, options.cores, options.case, lambda line: print(line, flush=True))
 
 
