@@ -1,7 +1,7 @@
 """Contact stiffness from wave speed: a step of velocity sent up a tower, as in the paper's Figs. 9 and 10."""
 
 from collections.abc import Mapping
-from typing import Any, TypedDict
+from typing import Any, NamedTuple, TypedDict
 
 import numpy as np
 import pandas as pd
@@ -16,6 +16,7 @@ from blockshake.study.stiffness.tower import tower_of
 from blockshake.study.stiffness.wave_step import (
     AXES,
     STEP_VELOCITY,
+    StepTest,
     crossing,
     no_passage,
     send_step,
@@ -33,6 +34,23 @@ _MATCHED = 1e-4  # relative error of the wave speed at which the search stops
 _MOST_ROUNDS = 8
 
 
+class WaveTest(NamedTuple):
+    """One step test and the wave speed read from it.
+
+    Attributes
+    ----------
+    step : StepTest
+    arrival : float64 array, shape (n_blocks,)
+        At the blocks from the lowest up [s].
+    wave_speed : float
+        [m/s]
+    """
+
+    step: StepTest
+    arrival: np.ndarray
+    wave_speed: float
+
+
 def target_wave_speeds(structure):
     """Speeds of pressure and shear waves in the tower's material, Zhou et al. (2023), Eqs. (7), (8) [m/s].
 
@@ -48,7 +66,7 @@ def target_wave_speeds(structure):
 
 
 def measure_wave_speed(structure, parameters, direction):
-    """Send one step of velocity up a tower with LS-DEM and read the effective wave speed.
+    """`WaveTest`: send one step of velocity up a tower with LS-DEM and read the effective wave speed.
 
     Parameters
     ----------
@@ -58,25 +76,16 @@ def measure_wave_speed(structure, parameters, direction):
     direction : str
         ``normal`` (vertical step) or ``shear`` (horizontal step, rotations blocked).
 
-    Returns
-    -------
-    time, displacement, velocity
-        Of `send_step`.
-    arrival : float64 array, shape (n_blocks,)
-        At the blocks from the lowest up [s].
-    wave_speed : float
-        [m/s]
-
     Raises
     ------
     InputError
         The structure is not a single tower, or a block never reached half the step's velocity.
     """
-    time, displacement, velocity, height = send_step(structure, parameters, direction)
-    arrival = np.array([crossing(time, history, 0.5 * STEP_VELOCITY) for history in velocity.T])
-    if np.isnan(arrival).any():
+    test = send_step(structure, parameters, direction)
+    if not (test.velocity >= 0.5 * STEP_VELOCITY).any(axis=0).all():
         raise no_passage(structure, direction)
-    return time, displacement, velocity, arrival, float(height / (arrival[-1] - arrival[0]))
+    arrival = np.array([crossing(test.time, history, 0.5 * STEP_VELOCITY) for history in test.velocity.T])
+    return WaveTest(test, arrival, float(test.height / (arrival[-1] - arrival[0])))
 
 
 class Stiffness(TypedDict):
@@ -127,7 +136,7 @@ def calibrate_stiffness(structure: StructureSource, parameters: Mapping[str, Any
             numerical = LsDemParameters(
                 normal_stiffness=stiffness["normal"], shear_stiffness=stiffness["shear"]
             )
-            reached[direction] = measure_wave_speed(tower, numerical, direction)[-1]
+            reached[direction] = measure_wave_speed(tower, numerical, direction).wave_speed
             ratio = targets[direction] / reached[direction]
             if abs(ratio - 1.0) < _MATCHED:
                 break
@@ -195,18 +204,18 @@ def wave_tests(structure):
     blocks = [tower.body_names[body] for body in tower_blocks(tower)]
     tests = []
     for direction in AXES:
-        time, displacement, velocity, arrival, speed = measure_wave_speed(tower, numerical, direction)
+        test = measure_wave_speed(tower, numerical, direction)
         tests.append(
             xr.Dataset(
                 {
-                    "displacement": (("time", "block"), displacement, {"units": "m"}),
-                    "velocity": (("time", "block"), velocity, {"units": "m s-1"}),
-                    "arrival": ("block", arrival, {"units": "s"}),
+                    "displacement": (("time", "block"), test.step.displacement, {"units": "m"}),
+                    "velocity": (("time", "block"), test.step.velocity, {"units": "m s-1"}),
+                    "arrival": ("block", test.arrival, {"units": "s"}),
                     "stiffness": ((), calibrated[f"{direction}_stiffness"], {"units": "N m-3"}),
-                    "wave_speed": ((), speed, {"units": "m s-1"}),
+                    "wave_speed": ((), test.wave_speed, {"units": "m s-1"}),
                     "target_wave_speed": ((), calibrated["target_wave_speed"][direction], {"units": "m s-1"}),
                 },
-                coords={"time": ("time", time, {"units": "s"}), "block": blocks},
+                coords={"time": ("time", test.step.time, {"units": "s"}), "block": blocks},
             )
         )
     joined = xr.concat(tests, dim=xr.Variable("direction", list(AXES)), join="outer")

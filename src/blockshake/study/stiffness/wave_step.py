@@ -1,5 +1,7 @@
 """A step of velocity sent up a tower by LS-DEM: the experiment behind the contact stiffness."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from blockshake.dynamics.motion import ground_motion
@@ -12,28 +14,40 @@ STEP_VELOCITY = 1e-3  # m/s; a larger step would open or slip the joints and mea
 AXES = {"normal": ("z", 2), "shear": ("x", 0)}
 _TIME_STEP = model_of("ls-dem").time_step  # s; shorter where a wave passes a block in fewer steps than these
 _STEPS_A_BLOCK = 20
-_PASSAGES = 3.0  # of the tower at the long-wave speed of the chain, in a test
 
 
-def send_step(structure, parameters, direction):
-    """Histories of the blocks of a tower whose base moves with the step's velocity from the start.
+class StepTest(NamedTuple):
+    """Histories of a step of velocity sent up a tower.
+
+    Attributes
+    ----------
+    time : float64 array, shape (n_times,)
+        [s], evenly spaced.
+    displacement, velocity : float64 arrays, shape (n_times, n_blocks)
+        Along the step, blocks from the lowest up [m, m/s].
+    height : float
+        Of the highest block's mass centre over that of the lowest [m].
+    """
+
+    time: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+    height: float
+
+
+def send_step(structure, parameters, direction, passages=3.0, rotations_blocked=True):
+    """`StepTest` of the blocks of a tower whose base moves with the step's velocity from the start.
 
     Parameters
     ----------
     structure : Structure
     parameters : LsDemParameters
     direction : str
-        ``normal`` or ``shear``, whose horizontal step finds the rotations of the blocks blocked; a vertical one turns
-        none.
-
-    Returns
-    -------
-    time : float64 array, shape (n_times,)
-        Evenly spaced [s].
-    displacement, velocity : float64 arrays, shape (n_times, n_blocks)
-        Along the step, blocks from the lowest up [m, m/s].
-    height : float
-        Of the highest block's mass centre over that of the lowest [m].
+        ``normal`` or ``shear``.
+    passages : float
+        Length of the test, in passages of the tower at the chain's long-wave speed [1].
+    rotations_blocked : bool
+        Of the blocks under a horizontal step; a vertical one turns none.
 
     Raises
     ------
@@ -46,18 +60,17 @@ def send_step(structure, parameters, direction):
     pitch = height / (len(blocks) - 1)
     stiffness = parameters.normal_stiffness if direction == "normal" else parameters.shear_stiffness
     density = structure.mass[blocks[0]] / structure.solid(blocks[0]).properties.volume
-    duration = _PASSAGES * (height + pitch) / np.sqrt(stiffness * pitch / density)
+    duration = passages * (height + pitch) / np.sqrt(stiffness * pitch / density)
     young = structure.file.materials[structure.file.bodies[blocks[0]].material].youngs_modulus
     time_step = min(_TIME_STEP, pitch * np.sqrt(density / young) / _STEPS_A_BLOCK)
     times = np.arange(0.0, duration, time_step)
     step = ground_motion("velocity step", [0.0, 2.0 * duration], {channel: [STEP_VELOCITY] * 2}, "velocity")
-    run = simulate_ls_dem(
-        structure, step, parameters, times, time_step, rotations_blocked=direction == "shear"
-    )
+    blocked = direction == "shear" and rotations_blocked
+    run = simulate_ls_dem(structure, step, parameters, times, time_step, rotations_blocked=blocked)
     if run.status != Status.COMPLETED:
         raise no_passage(structure, direction, f"; {run.reason}")
     moved = run.position[:, blocks, axis] - run.position[0, blocks, axis]
-    return times, moved, run.velocity[:, blocks, axis], height
+    return StepTest(times, moved, run.velocity[:, blocks, axis], height)
 
 
 def no_passage(structure, direction, reason=""):
