@@ -71,7 +71,11 @@ def sample(case, model, number, took=None):
 
 def test_a_study_runs_where_the_user_is_and_says_where_all_is(folder, workflow, capsys):
     assert main(["study", "study.yaml", "--cores", "3"]) == 0
-    said = capsys.readouterr().out.splitlines()
+    checked, *said = capsys.readouterr().out.partition("mine: ")
+    assert checked.startswith(
+        "study.yaml: a study of 2 cases by ls-dem (10 samples), nscd-rigid (10 samples)\n"
+    )
+    said = "".join(said).splitlines()
     assert said[0] == f"mine: 40 runs of ls-dem, nscd-rigid, on 3 cores, in {folder}"
     assert said[-1].endswith("; reports/mine.html, reports/mine.pdf, results/mine/")
     ((*_, command),) = (workflow[0],)
@@ -89,7 +93,7 @@ def test_progress_is_told_by_case_with_the_time_left(folder, workflow, capsys):
         ]
     )
     assert main(["study", "study.yaml", "--cores", "2"]) == 0
-    told = [line for line in capsys.readouterr().out.splitlines() if "samples" in line]
+    told = [line for line in capsys.readouterr().out.splitlines() if " of 10 samples" in line]
     # nothing is known of LS-DEM; strong runs last twice as long as weak ones: 10 x 4 s on 2 cores
     assert told[0] == "weak, NSCD rigid: 10 of 10 samples; 10 of 40 runs; more than 20 s left"
     # and 10 x 10 s by LS-DEM
@@ -106,7 +110,7 @@ def test_a_command_that_goes_on_counts_what_is_there(folder, workflow, capsys):
         (runs / f"{batch}.nc").touch()
     workflow[1].extend([*(sample("weak", "ls-dem", number, 2.0) for number in (8, 9))])
     assert main(["study", "study.yaml", "--cores", "1"]) == 0
-    said = capsys.readouterr().out.splitlines()
+    said = capsys.readouterr().out.partition("mine: ")[2].splitlines()
     assert said[1] == "8 of them are there from before, and run again only where their input changed"
     assert any(line.startswith("weak, LS-DEM: 10 of 10 samples; 10 of 40 runs; ") for line in said)
 
