@@ -1,3 +1,5 @@
+import itertools
+
 import numpy as np
 import pytest
 from scipy import integrate, stats
@@ -58,6 +60,17 @@ def test_quantiles_are_those_of_the_normal_logarithm():
     assert np.log(variable.quantile(0.975) / variable.median) / variable.log_deviation == pytest.approx(
         1.959963985, abs=1e-8
     )
+
+
+def test_stratum_means_are_conditional_means_by_quadrature():
+    variable, size = Lognormal(mean=0.75, cov=0.3), 10
+    edges = np.arange(size + 1) / size
+    by_quadrature = [
+        size * integrate.quad(variable.quantile, low, high, epsrel=1e-10)[0]
+        for low, high in itertools.pairwise(edges)
+    ]
+    # the integrand is unbounded, though integrable, at 0 and 1
+    np.testing.assert_allclose(variable.stratum_means(size), by_quadrature, rtol=1e-6)
 
 
 def test_config_replaces_table_2_as_a_whole():
@@ -126,10 +139,11 @@ def test_a_tabulated_variable_of_two_values_is_uniform():
     variable = Tabulated(distribution="tabulated", values=(-1.0, 3.0))
     assert variable.mean == pytest.approx(1.0)
     assert variable.median == pytest.approx(1.0)
-    assert variable.cov == pytest.approx(4.0 / np.sqrt(12.0), rel=1e-12)
+    assert variable.cov == pytest.approx(4.0 / np.sqrt(12.0), rel=1e-5)  # the midpoint rule of 640 points
     np.testing.assert_allclose(variable.quantile([0.0, 0.25, 1.0]), [-1.0, 0.0, 3.0])
     np.testing.assert_allclose(variable.density([-1.5, -0.5, 2.9, 3.1]), [0.0, 0.25, 0.25, 0.0])
     np.testing.assert_allclose(variable.stratum_medians(4), [-0.5, 0.5, 1.5, 2.5])
+    np.testing.assert_allclose(variable.stratum_means(4), [-0.5, 0.5, 1.5, 2.5])
 
 
 def test_the_density_of_a_tabulated_variable_is_that_of_its_quantiles():
@@ -204,8 +218,9 @@ def test_a_name_of_scipy_is_that_distribution(entry, known):
     np.testing.assert_array_equal(variable.density(known.ppf(chances)), known.pdf(known.ppf(chances)))
     assert variable.mean == pytest.approx(known.mean())
     assert variable.cov == pytest.approx(known.std() / known.mean())
-    # medians of strata are exact quantiles
+    # medians of strata are exact quantiles, and means of strata average to the mean
     np.testing.assert_array_equal(variable.stratum_medians(10), known.ppf((np.arange(10) + 0.5) / 10))
+    assert variable.stratum_means(10).mean() == pytest.approx(known.mean(), rel=1e-3)
     assert load_distributions({"friction.a.b": variable.model_dump(mode="json")}, "again") == {
         "friction.a.b": variable
     }
@@ -219,6 +234,8 @@ def test_mean_and_variation_may_tell_place_and_scale(entry):
     variable = loaded(**entry, mean=0.7, cov=0.1)
     assert variable.mean == pytest.approx(0.7)
     assert variable.cov == pytest.approx(0.1)
+    strata = variable.stratum_means(10)
+    assert strata.mean() == pytest.approx(0.7, rel=1e-3)
 
 
 def test_a_lognormal_by_scipy_is_the_one_by_mean_and_variation():

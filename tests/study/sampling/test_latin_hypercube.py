@@ -38,6 +38,13 @@ def test_marginals_are_table_2_within_the_stated_loss(design):
         assert -0.015 < values.std() / values.mean() / variable.cov - 1.0 < -0.012
 
 
+def test_stratum_means_keep_the_mean_and_most_of_the_variation():
+    values = draw_samples(stratum="mean", effort=1).values
+    for name, variable in TABLE_2.items():
+        assert values[name].mean() == pytest.approx(variable.mean, rel=1e-13)
+        assert -0.004 < values[name].std(ddof=0) / variable.mean / variable.cov - 1.0 < -0.002
+
+
 def test_every_variable_hits_the_median_of_every_stratum_once(design):
     for name, variable in TABLE_2.items():
         probability = norm.cdf(
@@ -137,6 +144,7 @@ def test_summary_is_what_the_design_holds(design):
         ({"size": 12.5}, "whole number"),
         ({"seed": -1}, "seed: "),
         ({"effort": 0}, "effort: "),
+        ({"stratum": "middle"}, "median, mean"),
         ({"kind": "kendall"}, "pearson, spearman"),
         ({"correlation": pd.DataFrame([[1.0]], index=["mass"], columns=["mass"])}, "mass: expected one of"),
         ({"correlation": CORRELATED.iloc[:2]}, "square"),

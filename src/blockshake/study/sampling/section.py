@@ -24,7 +24,7 @@ def samples(content):
                 "in its order."
                 if content.study["ensemble"].get("table")
                 else f"Latin hypercube of {summary['size']} samples, seed {summary['seed']}; each stratum is "
-                f"represented by its median. Correlation asked for: {target}; the "
+                f"represented by its {summary['stratum']}. Correlation asked for: {target}; the "
                 f"{summary['correlation_kind']} correlation differs from it by "
                 f"{number(summary['largest_correlation_error'])} at most."
             )
