@@ -150,6 +150,8 @@ def test_clocks_of_the_day_are_seconds(what, tmp_path):
     cells, seconds = CLOCKS[what]
     (tmp_path / "t.csv").write_text("\n".join(["t;a", *(f"{cell};1" for cell in cells)]))
     assert read_table(tmp_path / "t.csv", TableLayout()).times("t").tolist() == seconds
+    # a map of tests with clocks and with milliseconds names the unit of the latter
+    assert read_table(tmp_path / "t.csv", TableLayout()).times("t", Decimal("0.001")).tolist() == seconds
     (tmp_path / "t.csv").write_text("\n".join(f"{cell};1" for cell in cells))  # without names
     assert read_table(tmp_path / "t.csv", TableLayout()).times("1").tolist() == seconds
 

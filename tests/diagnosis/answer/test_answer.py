@@ -14,6 +14,7 @@ from blockshake.diagnosis.answer.answer import (
     needed_beside,
     slab_groups,
 )
+from blockshake.diagnosis.outside import free_force
 
 
 def rivals(**scores):
@@ -65,3 +66,13 @@ def test_the_slab_s_rotation_and_its_vertical_motion_are_judged_apart():
     assert causes(turning) == ("table-pitch", "base-compliance")
     assert slab_groups({name: SimpleNamespace(gain=-1.0) for name in gains}) == []
     assert np.isfinite(turning.odds["base-compliance"])
+
+
+def test_the_size_of_a_force_without_form_is_its_standard_deviation(monkeypatch):
+    gains = {300.0: 1.0, 1e3: 8.0, 3e3: 6.0, 1e4: 2.0}  # by size [N]
+    rows = [np.array([700.0, -400.0]), np.array([50.0])]
+    monkeypatch.setattr(free_force, "_with_force", lambda likelihood, points, size: (gains[size], rows))
+    best = free_force.explain_free_force(None, SimpleNamespace(place="block-1")).best
+    assert best.mean == [1e3]
+    for column, expected in zip(best.columns, rows, strict=True):
+        np.testing.assert_allclose(column @ best.mean, expected)

@@ -93,6 +93,10 @@ def _reversed_accelerometer(test):
     test["accelerometer"][:, 0] *= -1.0
 
 
+def _exchanged_accelerometers(test):
+    test["accelerometer"][:] *= 0.75
+
+
 def _another_motion(test):
     test["marker_displacement"][:] = test["marker_displacement"].to_numpy()[::-1]
     test["marker_displacement"][:] -= test["marker_displacement"].to_numpy()[:5].mean(axis=0)
@@ -111,6 +115,7 @@ REMARKS = {
     # what the accelerometers' clock calls earlier, the markers show later
     "a late clock": (_late_clock, r"the markers' clock is (20|19\.\d+|20\.\d+) ms behind the accelerometers'"),
     "a reversed accelerometer": (_reversed_accelerometer, r"slab's accelerometer along x reads -(0\.99|1)\d* of"),
+    "accelerometers of another test": (_exchanged_accelerometers, r"slab's accelerometer along x reads 0\.7\d* of"),
     "another motion": (_another_motion, "does not follow the commanded motion"),
     "a start that is off": (_away, "block-1-lower starts 4.* mm off"),
 }  # fmt: skip
@@ -262,3 +267,12 @@ def test_a_sensor_that_one_test_lacks_is_remarked(tmp_path):
     lines = campaign_lines(folder)
     assert f"  t2: no readings of {MARKERS[-1]}, block-1-acc-x, which other tests have" in lines
     assert sum("no readings of" in line for line in lines) == 1
+
+
+def test_a_test_that_is_there_twice_is_remarked(tmp_path):
+    folder = write_campaign(tmp_path, resting_stack())
+    campaign = folder / "campaign.yaml"
+    listed = campaign.read_text().rstrip().splitlines()[-1]
+    campaign.write_text(f"{campaign.read_text().rstrip()}\n{listed.replace('t1', 't2')}\n")
+    (folder / "t2.nc").write_bytes((folder / "t1.nc").read_bytes())
+    assert "  t2: has the readings of t1" in campaign_lines(folder)
