@@ -27,19 +27,11 @@ _ROW = re.compile(r"^(\w+) +(\d+)$", re.MULTILINE)
 
 
 class CostPart(NamedTuple):
-    """Runs or jobs of one kind.
-
-    Attributes
-    ----------
-    name : str
-    count : int
-    seconds : float
-        CPU time of all of them [s].
-    """
+    """Runs or jobs of one kind."""
 
     name: str
     count: int
-    seconds: float
+    seconds: float  # CPU time of all of them [s]
 
 
 def planned_jobs(command):

@@ -29,23 +29,12 @@ class MotionTable(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class GroundMotion(Shown):
-    """Motion of the driven body.
+    """Motion of the driven body."""
 
-    Attributes
-    ----------
-    name : str
-        Name that reports use.
-    table : MotionTable
-        Displacement and pitch; the body rests after the last row.
-    kind : str
-        What the source gave: ``acceleration``, ``velocity`` or ``displacement``.
-    attributes : dict
-        Provenance for outputs: ``source``, ``synthetic`` (bool), ``baseline`` and the like.
-    """
-
-    name: str
-    table: MotionTable
-    kind: str
+    name: str  # name that reports use
+    table: MotionTable  # displacement and pitch; the body rests after the last row
+    kind: str  # what the source gave: ``acceleration``, ``velocity`` or ``displacement``
+    # provenance for outputs: ``source``, ``synthetic`` (bool), ``baseline`` and the like
     attributes: dict[str, Any] = field(default_factory=dict)
 
     def _words(self):

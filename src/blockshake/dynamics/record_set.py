@@ -129,25 +129,13 @@ def _record(table, place, cells):
 
 @dataclass(frozen=True)
 class DrawnMotions:
-    """Motions of a case, one for each of its samples.
+    """Motions of a case, one for each of its samples."""
 
-    Attributes
-    ----------
-    records : tuple of SetRecord
-    baseline : str or float
-        As for `load_motion`.
-    scale : float
-        Multiplies every motion, after any level [1].
-    intensity : Intensity
-    loaded : dict
-        Motions that were read already, by path and baseline.
-    """
-
-    records: tuple
-    baseline: str | float
-    scale: float
+    records: tuple  # of SetRecord
+    baseline: str | float  # str or float; as for `load_motion`
+    scale: float  # multiplies every motion, after any level [1]
     intensity: Intensity
-    loaded: dict = field(default_factory=dict)
+    loaded: dict = field(default_factory=dict)  # motions that were read already, by path and baseline
 
     @classmethod
     def of(cls, case, loaded=None):

@@ -86,32 +86,18 @@ class Stoppers(NamedTuple):
 
 @dataclass(frozen=True)
 class Rows:
-    """Record of a run at some of the times asked for, in their order; NaN after an abort.
+    """Record of a run at some of the times asked for, in their order; NaN after an abort."""
 
-    Attributes
-    ----------
-    time : float64 array, shape (n_times,)
-        [s]
-    position, velocity, angular_velocity : float64 arrays, shape (n_times, n_bodies, 3)
-        Inertial frame [m, m/s, rad/s].
-    orientation : float64 array, shape (n_times, n_bodies, 4)
-        Unit quaternions (w, x, y, z), body to world, continuous in sign.
-    energy : float64 array, shape (n_times, 7)
-        `ENERGY_TERMS`, of the bodies that are not driven [J].
-    joints : int64 array, shape (n_joints, 2)
-        Pairs of bodies that touched so far, by index.
-    joint_force : float64 array, shape (n_times, n_joints, 3)
-        Resultant on the second body of each pair [N].
-    """
-
-    time: np.ndarray
+    time: np.ndarray  # float64 (n_times,) [s]
+    # position, velocity, angular_velocity: float64 (n_times, n_bodies, 3); inertial frame [m, m/s, rad/s]
     position: np.ndarray
+    # float64 (n_times, n_bodies, 4); unit quaternions (w, x, y, z), body to world, continuous in sign
     orientation: np.ndarray
     velocity: np.ndarray
     angular_velocity: np.ndarray
-    energy: np.ndarray
-    joints: np.ndarray
-    joint_force: np.ndarray
+    energy: np.ndarray  # float64 (n_times, 7); `ENERGY_TERMS`, of the bodies that are not driven [J]
+    joints: np.ndarray  # int64 (n_joints, 2); pairs of bodies that touched so far, by index
+    joint_force: np.ndarray  # float64 (n_times, n_joints, 3); resultant on the second body of each pair [N]
 
     def at(self, rows):
         """Some of these rows; a slice, numbers or a mask."""
@@ -123,23 +109,12 @@ class Rows:
 
 @dataclass(frozen=True)
 class Trajectory(Rows):
-    """Rows until the last time asked for, and how the run ended.
-
-    Attributes
-    ----------
-    status : Status
-    reason : str
-        Why the run ended early or is not to be trusted; empty when completed.
-    end_time : float
-        Time reached [s].
-    numerics : dict of str to float
-        Figures of the computation: steps, residuals, iterations and the like.
-    """
+    """Rows until the last time asked for, and how the run ended."""
 
     status: Status
-    reason: str
-    end_time: float
-    numerics: dict
+    reason: str  # why the run ended early or is not to be trusted; empty when completed
+    end_time: float  # time reached [s]
+    numerics: dict  # str to float; figures of the computation: steps, residuals, iterations and the like
 
 
 def assemble_bodies(structure):

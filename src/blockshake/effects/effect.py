@@ -13,14 +13,7 @@ from blockshake.measurement.sensors.instruments import Instruments
 
 @dataclass(frozen=True)
 class Experiment:
-    """One test as a solver and the sensors are given it; an effect turns one into another.
-
-    Attributes
-    ----------
-    structure : Structure
-    motion : GroundMotion
-    instruments : Instruments
-    """
+    """One test as a solver and the sensors are given it; an effect turns one into another."""
 
     structure: Structure
     motion: GroundMotion
@@ -44,107 +37,64 @@ class Experiment:
 
 @dataclass(frozen=True)
 class EffectParameter:
-    """One number of an effect.
-
-    Attributes
-    ----------
-    name, unit, meaning : str
-    null : float
-        At which the effect is absent, or, of a parameter that has no such value, its usual one.
-    lower, upper : float
-        Ends of the prior, uniform between them.
-    visible : float
-        A size at which a test that moves the blocks should show it; half of it is the small size of the tests.
-    """
+    """One number of an effect."""
 
     name: str
     unit: str
     meaning: str
-    null: float
+    null: float  # at which the effect is absent, or, of a parameter that has no such value, its usual one
+    # lower, upper: ends of the prior, uniform between them
     lower: float
     upper: float
+    # a size at which a test that moves the blocks should show it; half of it is the small size of the tests
     visible: float
 
 
 class Columns(NamedTuple):
-    """Rows of the forces that one variant of an effect makes in a test, given the measured motion.
+    """Rows of the forces that one variant of an effect makes in a test, given the measured motion."""
 
-    Attributes
-    ----------
-    values : dict of str to float
-        Parameters that are not amplitudes, at one point of their grid.
-    rows : float64 array, shape (n_rows, n_amplitudes)
-        Per unit of each amplitude.
-    scales : tuple of float
-        Standard deviations of the amplitudes' priors, about zero; None where the rows have no amplitude.
-    positive : bool
-        The first amplitude is not negative.
-    """
-
-    values: dict
-    rows: np.ndarray
+    values: dict  # str to float; parameters that are not amplitudes, at one point of their grid
+    rows: np.ndarray  # float64 (n_rows, n_amplitudes); per unit of each amplitude
+    # of float; standard deviations of the amplitudes' priors, about zero; None where the rows have no
+    # amplitude
     scales: tuple | None
-    positive: bool
+    positive: bool  # the first amplitude is not negative
 
 
 @dataclass(frozen=True)
 class Effect:
-    """An entry of the registry.
+    """An entry of the registry."""
 
-    Attributes
-    ----------
-    name : str
-        As in ``verdict.json``.
-    title : str
-        As in reports.
-    acts : str
-        Where: on the ``input``, the ``contact``, the ``geometry``, a ``force`` or the ``observation``.
-    equation, source : str
-        Law of the effect, and its literature.
-    parameters : tuple of EffectParameter
-        The first is the size: at its null value nothing is changed, whatever the others.
-    confused_with : tuple of str
-        Names of effects that leave nearly the same.
-    told_apart_by : str
-        The measurement that tells them apart.
-    places : callable
-        Of a structure: where the effect may be, list of dict (``{}`` where it has no place).
-    act : callable
-        Of an experiment, the values by parameter name, and the place: the experiment with the effect.
-    columns : callable, optional
-        Of a `SeenTest` and a place of the evidence: `Columns` of all variants of the effect there, the same variants in
-        every test. None where the effect shows elsewhere than in the forces of joints.
-    seen_at : callable, optional
-        Of the structure: places of the evidence, those of ``places`` by default.
-    variant : callable, optional
-        Of a `SeenTest`, a place of the evidence and the values of a fit: the rows of that variant, (n_rows,
-        n_amplitudes). By default those of ``columns`` with these values.
-    turns, lifts : callable, optional
-        Of a `SlabMotion`: `Columns` of its rotation, and covariances of its vertical displacement.
-    reads : callable, optional
-        Of a variant's values, amplitudes, and places between two points of the grid, -0.5 to 0.5, float64 arrays: the
-        parameters, dict of str to float or array.
-    extends : callable, optional
-        Of an experiment, parameters that ``reads`` gave, and a place of the evidence: the experiment with the effect.
-        By default ``act`` at that place.
-    """
-
-    name: str
-    title: str
+    name: str  # as in ``verdict.json``
+    title: str  # as in reports
+    # where: on the ``input``, the ``contact``, the ``geometry``, a ``force`` or the ``observation``
     acts: Literal["input", "contact", "geometry", "force", "observation"]
+    # equation, source: law of the effect, and its literature
     equation: str
     source: str
+    # the first is the size: at its null value nothing is changed, whatever the others
     parameters: tuple[EffectParameter, ...]
-    confused_with: tuple[str, ...]
-    told_apart_by: str
-    places: Callable
+    confused_with: tuple[str, ...]  # names of effects that leave nearly the same
+    told_apart_by: str  # the measurement that tells them apart
+    places: Callable  # of a structure: where the effect may be, list of dict (``{}`` where it has no place)
+    # of an experiment, the values by parameter name, and the place: the experiment with the effect
     act: Callable
+    # of a `SeenTest` and a place of the evidence: `Columns` of all variants of the effect there, the same
+    # variants in every test. None where the effect shows elsewhere than in the forces of joints
     columns: Callable | None = None
+    # of the structure: places of the evidence, those of ``places`` by default
     seen_at: Callable | None = None
+    # of a `SeenTest`, a place of the evidence and the values of a fit: the rows of that variant, (n_rows,
+    # n_amplitudes). By default those of ``columns`` with these values
     variant: Callable | None = None
+    # turns, lifts: of a `SlabMotion`: `Columns` of its rotation, and covariances of its vertical displacement
     turns: Callable | None = None
     lifts: Callable | None = None
+    # of a variant's values, amplitudes, and places between two points of the grid, -0.5 to 0.5, float64
+    # arrays: the parameters, dict of str to float or array
     reads: Callable | None = None
+    # of an experiment, parameters that ``reads`` gave, and a place of the evidence: the experiment with the
+    # effect. By default ``act`` at that place
     extends: Callable | None = None
 
     def rows_of(self, seen, place, values):

@@ -14,31 +14,19 @@ _TURNED, _AS_LAID = np.cos(0.5), 1.0 - 1e-9  # cosines of turns between which a 
 
 @dataclass(frozen=True)
 class Face:
-    """The face of one joint.
+    """The face of one joint."""
 
-    Attributes
-    ----------
-    name : str
-        ``lower-upper``.
-    lower, upper : int
-        Bodies, by the height of their centroids.
-    friction : float
-        Coulomb's coefficient of the pair, as the structure states it [1].
-    corners : float64 array, shape (n_corners, 3)
-        Of the common area, from the middle of the face, in the axes of ``axes`` [m].
-    on_upper : float64 array, shape (3,)
-        Middle of the face from the mass centre of the upper body, in its frame [m].
-    axes : float64 array, shape (3, 3)
-        At the start, world frame, in columns: two tangents, the first one along x as far as the face allows, or along
-        the edges of a box that is turned, and the normal from the lower to the upper body.
-    """
-
-    name: str
+    name: str  # ``lower-upper``
+    # lower, upper: bodies, by the height of their centroids
     lower: int
     upper: int
-    friction: float
+    friction: float  # Coulomb's coefficient of the pair, as the structure states it [1]
+    # float64 (n_corners, 3); of the common area, from the middle of the face, in the axes of ``axes`` [m]
     corners: np.ndarray
+    # float64 (3,); middle of the face from the mass centre of the upper body, in its frame [m]
     on_upper: np.ndarray
+    # float64 (3, 3); at the start, world frame, in columns: two tangents, the first one along x as far as the
+    # face allows, or along the edges of a box that is turned, and the normal from the lower to the upper body
     axes: np.ndarray
 
     @property

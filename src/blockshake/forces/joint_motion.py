@@ -13,29 +13,20 @@ SURE = 5.0  # standard deviations
 
 @dataclass(frozen=True)
 class JointMotion:
-    """Motion of the joints in the axes of the lower body's face.
+    """Motion of the joints in the axes of the lower body's face."""
 
-    Attributes
-    ----------
-    rotation : float64 array, shape (n_times, n_joints)
-        Of the upper body about the second tangent: positive leans its top along the first one [rad].
-    roll : float64 array, shape (n_times, n_joints)
-        Of the upper body about the first tangent: positive leans its top against the second one [rad].
-    rotation_error : float64 array, shape (n_joints,)
-        [rad]
-    slip_rate : float64 array, shape (n_times, n_joints)
-        Along the first tangent, of the point of the upper body that bears [m/s].
-    slip_error : float64 array, shape (n_joints,)
-        Of the displacement along the first tangent [m].
-    side, across : int8 arrays, shape (n_times, n_joints)
-        Edge that bears: 1 or -1 along the first, and along the second tangent, 0 for the whole face.
-    """
-
+    # float64 (n_times, n_joints); of the upper body about the second tangent: positive leans its top along
+    # the first one [rad]
     rotation: np.ndarray
+    # float64 (n_times, n_joints); of the upper body about the first tangent: positive leans its top against
+    # the second one [rad]
     roll: np.ndarray
-    rotation_error: np.ndarray
+    rotation_error: np.ndarray  # float64 (n_joints,) [rad]
+    # float64 (n_times, n_joints); along the first tangent, of the point of the upper body that bears [m/s]
     slip_rate: np.ndarray
-    slip_error: np.ndarray
+    slip_error: np.ndarray  # float64 (n_joints,); of the displacement along the first tangent [m]
+    # side, across: int8 (n_times, n_joints); edge that bears: 1 or -1 along the first, and along the second
+    # tangent, 0 for the whole face
     side: np.ndarray
     across: np.ndarray
 

@@ -22,41 +22,27 @@ _FAR_OUT = 6.0  # median distances, four standard deviations
 
 @dataclass(frozen=True)
 class Motion:
-    """Smoothed motion of all bodies; all vectors in the world frame.
+    """Smoothed motion of all bodies; all vectors in the world frame."""
 
-    Attributes
-    ----------
-    time : float64 array, shape (n_times,)
-        [s]
-    position, velocity, acceleration : float64 arrays, shape (n_times, n_bodies, 3)
-        Of the mass centres [m, m/s, m/s2]; NaN where unknown.
-    rotation : float64 array, shape (n_times, n_bodies, 3, 3)
-        Body to world.
-    angular_velocity, angular_acceleration : float64 arrays, shape (n_times, n_bodies, 3)
-        [rad/s, rad/s2]
-    information : float64 array, shape (n_times, n_bodies, 6, 6)
-        Inverse covariance of acceleration and angular acceleration; singular where a direction is not read, zero
-        where nothing is.
-    pose_covariance, rate_covariance : float64 arrays, shape (n_bodies, 6, 6)
-        Of the smoothed position and small rotation [m, rad], and of their rates [m/s, rad/s].
-    known : list of str, length n_bodies
-        As of `body_poses`.
-    width : float
-        Standard deviation of the smoothing kernel [s].
-    """
-
-    time: np.ndarray
+    time: np.ndarray  # float64 (n_times,) [s]
+    # position, velocity, acceleration: float64 (n_times, n_bodies, 3); of the mass centres [m, m/s, m/s2];
+    # NaN where unknown
     position: np.ndarray
     velocity: np.ndarray
     acceleration: np.ndarray
-    rotation: np.ndarray
+    rotation: np.ndarray  # float64 (n_times, n_bodies, 3, 3); body to world
+    # angular_velocity, angular_acceleration: float64 (n_times, n_bodies, 3) [rad/s, rad/s2]
     angular_velocity: np.ndarray
     angular_acceleration: np.ndarray
+    # float64 (n_times, n_bodies, 6, 6); inverse covariance of acceleration and angular acceleration; singular
+    # where a direction is not read, zero where nothing is
     information: np.ndarray
+    # pose_covariance, rate_covariance: float64 (n_bodies, 6, 6); of the smoothed position and small rotation
+    # [m, rad], and of their rates [m/s, rad/s]
     pose_covariance: np.ndarray
     rate_covariance: np.ndarray
-    known: list
-    width: float
+    known: list  # of str, length n_bodies; as of `body_poses`
+    width: float  # standard deviation of the smoothing kernel [s]
 
     def velocity_at(self, body, point):
         """Velocity of the point of a body that is at ``point`` (n_times, 3), in the world frame [m/s]."""

@@ -9,17 +9,11 @@ _UNREAD = 1e-12  # of the largest eigenvalue
 
 @dataclass(frozen=True)
 class RequiredWrenches:
-    """Wrenches of all contacts on each body, about its mass centre, world frame.
+    """Wrenches of all contacts on each body, about its mass centre, world frame."""
 
-    Attributes
-    ----------
-    wrench : float64 array, shape (n_times, n_bodies, 6)
-        Force [N] and moment [N m]; NaN where the body's motion is unknown.
-    information : float64 array, shape (n_times, n_bodies, 6, 6)
-        Inverse covariance; singular where a direction is not read.
-    """
-
+    # float64 (n_times, n_bodies, 6); force [N] and moment [N m]; NaN where the body's motion is unknown
     wrench: np.ndarray
+    # float64 (n_times, n_bodies, 6, 6); inverse covariance; singular where a direction is not read
     information: np.ndarray
 
 

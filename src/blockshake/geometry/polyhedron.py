@@ -15,46 +15,23 @@ _SAME_PLANE = 1e-7
 
 @dataclass(frozen=True)
 class MassProperties:
-    """Volume, centroid, unit-density inertia and area of a closed surface.
+    """Volume, centroid, unit-density inertia and area of a closed surface."""
 
-    Attributes
-    ----------
-    volume : float
-        Enclosed volume [m3].
-    centroid : float64 array, shape (3,)
-        In the frame of the vertices [m].
-    inertia : float64 array, shape (3, 3)
-        About the centroid for a density of 1 kg/m3 [m5], axes of the vertices' frame.
-    area : float
-        [m2]
-    """
-
-    volume: float
-    centroid: np.ndarray
+    volume: float  # enclosed volume [m3]
+    centroid: np.ndarray  # float64 (3,); in the frame of the vertices [m]
+    # float64 (3, 3); about the centroid for a density of 1 kg/m3 [m5], axes of the vertices' frame
     inertia: np.ndarray
-    area: float
+    area: float  # [m2]
 
 
 @dataclass(frozen=True)
 class Polyhedron:
-    """A convex body by its vertices and polygonal faces.
+    """A convex body by its vertices and polygonal faces."""
 
-    Attributes
-    ----------
-    vertices : float64 array, shape (n_vertices, 3)
-        Body frame [m].
-    faces : tuple of int64 arrays
-        Vertex indices of each face, counter-clockwise seen from outside.
-    normals : float64 array, shape (n_faces, 3)
-        Unit outward normals.
-    offsets : float64 array, shape (n_faces,)
-        A point p lies inside where ``normals @ p <= offsets`` [m].
-    """
-
-    vertices: np.ndarray
-    faces: tuple
-    normals: np.ndarray
-    offsets: np.ndarray
+    vertices: np.ndarray  # float64 (n_vertices, 3); body frame [m]
+    faces: tuple  # of int64 arrays; vertex indices of each face, counter-clockwise seen from outside
+    normals: np.ndarray  # float64 (n_faces, 3); unit outward normals
+    offsets: np.ndarray  # float64 (n_faces,); a point p lies inside where ``normals @ p <= offsets`` [m]
 
 
 def box_vertices(size, chamfer):

@@ -12,18 +12,10 @@ _SAME_HEIGHT = 6  # decimals of a metre
 
 
 class ReferenceBlock(NamedTuple):
-    """One body, and its edge lengths as it stands in the structure.
+    """One body, and its edge lengths as it stands in the structure."""
 
-    Attributes
-    ----------
-    body : int
-        Index of the narrowest body of that material and height, the first of equals.
-    size : float64 array, shape (3,)
-        Of the box around its shape, the upright edge last [m].
-    """
-
-    body: int
-    size: np.ndarray
+    body: int  # index of the narrowest body of that material and height, the first of equals
+    size: np.ndarray  # float64 (3,); of the box around its shape, the upright edge last [m]
 
 
 def reference_body(structure):

@@ -44,68 +44,39 @@ START_TOLERANCE = 1e-4
 
 @dataclass(frozen=True)
 class Solid:
-    """A shape about the mass centre: its centroid, but for a body whose mass is offset.
+    """A shape about the mass centre: its centroid, but for a body whose mass is offset."""
 
-    Attributes
-    ----------
-    vertices, triangles : float64 (n, 3), int64 (m, 3)
-        Closed outward surface, body frame [m].
-    polyhedron : Polyhedron or None
-        The same as a convex body; None where the shape is not convex.
-    properties : MassProperties
-        Of unit density, about the centroid.
-    """
-
+    # vertices, triangles: float64 (n, 3), int64 (m, 3); closed outward surface, body frame [m]
     vertices: np.ndarray
     triangles: np.ndarray
-    polyhedron: Polyhedron | None
-    properties: MassProperties
+    polyhedron: Polyhedron | None  # the same as a convex body; None where the shape is not convex
+    properties: MassProperties  # of unit density, about the centroid
 
 
 @dataclass(frozen=True, repr=False)
 class Structure(Shown):
-    """A checked structure with what follows from its geometry.
+    """A checked structure with what follows from its geometry."""
 
-    Attributes
-    ----------
-    file : StructureFile
-        The file's content, parameters applied. Its positions count from the centroids of the shapes; those of the
-        structure, which differ where mass is offset, from the mass centres.
-    source : str
-        Name or path it came from.
-    folder : Path
-        Where its meshes lie.
-    solids : dict of str to Solid
-        By shape name, about the centroid.
-    mass : float64 array, shape (n_bodies,)
-        Of the true chamfered shape [kg].
-    inertia : float64 array, shape (n_bodies, 3, 3)
-        About the mass centre, body axes [kg m2].
-    driven : bool array, shape (n_bodies,)
-        Bodies that follow the motion.
-    position, velocity, angular_velocity : float64 arrays, shape (n_bodies, 3)
-        Of the mass centres at the start, world frame [m, m/s, rad/s].
-    orientation : float64 array, shape (n_bodies, 4)
-        At the start, unit quaternions (w, x, y, z), body to world.
-    friction : float64 array, shape (n_bodies, n_bodies)
-        Coulomb's coefficient of each pair of bodies [1]; NaN between driven bodies.
-    touching : bool array, shape (n_bodies, n_bodies)
-        Pairs nearer than 0.1 mm at the start.
-    """
-
+    # the file's content, parameters applied. Its positions count from the centroids of the shapes; those of
+    # the structure, which differ where mass is offset, from the mass centres
     file: StructureFile
-    source: str
-    folder: Path
-    solids: dict[str, Solid]
-    mass: np.ndarray
-    inertia: np.ndarray
-    driven: np.ndarray
+    source: str  # name or path it came from
+    folder: Path  # where its meshes lie
+    solids: dict[str, Solid]  # by shape name, about the centroid
+    mass: np.ndarray  # float64 (n_bodies,); of the true chamfered shape [kg]
+    inertia: np.ndarray  # float64 (n_bodies, 3, 3); about the mass centre, body axes [kg m2]
+    driven: np.ndarray  # bool (n_bodies,); bodies that follow the motion
+    # position, velocity, angular_velocity: float64 (n_bodies, 3); of the mass centres at the start, world
+    # frame [m, m/s, rad/s]
     position: np.ndarray
+    # float64 (n_bodies, 4); at the start, unit quaternions (w, x, y, z), body to world
     orientation: np.ndarray
     velocity: np.ndarray
     angular_velocity: np.ndarray
+    # float64 (n_bodies, n_bodies); Coulomb's coefficient of each pair of bodies [1]; NaN between driven
+    # bodies
     friction: np.ndarray
-    touching: np.ndarray
+    touching: np.ndarray  # bool (n_bodies, n_bodies); pairs nearer than 0.1 mm at the start
 
     def _words(self):
         free = self.mass[~self.driven]

@@ -20,25 +20,16 @@ _LARGEST_GAP = 2  # readings that interpolation bridges
 
 @dataclass(frozen=True)
 class BodyMarkers:
-    """Markers of one body.
+    """Markers of one body."""
 
-    Attributes
-    ----------
-    markers : tuple of str
-    points : float64 array, shape (n_markers, 3)
-        Body frame [m].
-    position, rotation : float64 arrays, shapes (n_tests, 3), (n_tests, 3, 3)
-        Pose at rest in each test; of one test, see `in_test`, (3,) and (3, 3).
-    tests : tuple of str
-    readings : list of (time, displacement)
-        Times [s] and readings (n_times, n_markers, 3) of each test, inertial frame [m].
-    """
-
-    markers: tuple
-    points: np.ndarray
+    markers: tuple  # of str
+    points: np.ndarray  # float64 (n_markers, 3); body frame [m]
+    # position, rotation: float64 (n_tests, 3), (n_tests, 3, 3); pose at rest in each test; of one test, see
+    # `in_test`, (3,) and (3, 3)
     position: np.ndarray
     rotation: np.ndarray
-    tests: tuple
+    tests: tuple  # of str
+    # of (time, displacement); times [s] and readings (n_times, n_markers, 3) of each test, inertial frame [m]
     readings: list
 
     @classmethod
@@ -86,24 +77,14 @@ def bodies_with_markers(structure, tests):
 
 
 class MeasuredPose(NamedTuple):
-    """Pose of a body in one test.
+    """Pose of a body in one test."""
 
-    Attributes
-    ----------
-    points : float64 array, shape (n_markers, 3)
-        Of its markers, body frame [m].
-    time : float64 array, shape (n_times,)
-        Even [s].
-    position, rotation : float64 arrays, shapes (n_times, 3), (n_times, 3, 3)
-        NaN where gaps are too long.
-    read : bool array, shape (n_times, n_markers)
-    """
-
-    points: np.ndarray
-    time: np.ndarray
+    points: np.ndarray  # float64 (n_markers, 3); of its markers, body frame [m]
+    time: np.ndarray  # float64 (n_times,); even [s]
+    # position, rotation: float64 (n_times, 3), (n_times, 3, 3); NaN where gaps are too long
     position: np.ndarray
     rotation: np.ndarray
-    read: np.ndarray
+    read: np.ndarray  # bool (n_times, n_markers)
 
 
 def measured_pose(body, test):

@@ -20,31 +20,20 @@ _SIGNAL_TO_NOISE = 10.0  # times its own noise that a channel must show in the b
 
 @dataclass(frozen=True)
 class ChannelPair:
-    """One accelerometer channel and its expectation from the markers, both through the same band.
-
-    Attributes
-    ----------
-    name, sensor : str
-    time : float64 array, shape (n_times,)
-        Of the markers [s].
-    expected, expected_slow : float64 arrays, shape (n_times,)
-        From the markers [m/s2]; NaN near gaps and ends.
-    read, read_slow : callables of times
-        Band-passed and low-passed readings at the accelerometers' times [m/s2]; NaN near gaps and ends.
-    noise : float
-        Standard deviation of the accelerometer's own noise in the band [m/s2].
-    unseen : bool
-        The markers lie on a line, and a turn about it, which they do not show, moves the sensor along its axis.
-    """
+    """One accelerometer channel and its expectation from the markers, both through the same band."""
 
     name: str
     sensor: str
-    time: np.ndarray
+    time: np.ndarray  # float64 (n_times,); of the markers [s]
+    # expected, expected_slow: float64 (n_times,); from the markers [m/s2]; NaN near gaps and ends
     expected: np.ndarray
     expected_slow: np.ndarray
+    # read, read_slow: callables of times; band-passed and low-passed readings at the accelerometers' times
+    # [m/s2]; NaN near gaps and ends
     read: object
     read_slow: object
-    noise: float
+    noise: float  # standard deviation of the accelerometer's own noise in the band [m/s2]
+    # the markers lie on a line, and a turn about it, which they do not show, moves the sensor along its axis
     unseen: bool
 
     @cached_property

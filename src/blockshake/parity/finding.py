@@ -18,32 +18,20 @@ class Level(NamedTuple):
 
 @dataclass(frozen=True)
 class Finding:
-    """One sensor fault.
+    """One sensor fault."""
 
-    Attributes
-    ----------
-    effect : str
-        That the fault counts as.
-    where : tuple of str
-        Markers, channels or displacement transducers; ``("optical clock",)`` and ``("optical frame",)`` for faults of
-        all markers; of an exchange of axes and of a polarity the marker and its axes.
-    quantity : str
-        Kind of the fault, of `blockshake.parity.kinds.registry.KINDS`.
-    estimate, covariance : float64 arrays, shapes (n,), (n, n)
-        In the units of the kind; n is 3 for a vector in the inertial or body frame, 0 without an estimate.
-    p : float
-        Chance of such a reading with a sensor within its tolerance, times the number of hypotheses looked at.
-    tests : tuple of str
-        Names of the tests it holds for.
-    """
-
-    effect: str
+    effect: str  # that the fault counts as
+    # of str; markers, channels or displacement transducers; ``("optical clock",)`` and ``("optical frame",)``
+    # for faults of all markers; of an exchange of axes and of a polarity the marker and its axes
     where: tuple
-    quantity: str
+    quantity: str  # kind of the fault, of `blockshake.parity.kinds.registry.KINDS`
+    # estimate, covariance: float64 (n,), (n, n); in the units of the kind; n is 3 for a vector in the
+    # inertial or body frame, 0 without an estimate
     estimate: np.ndarray
     covariance: np.ndarray
+    # chance of such a reading with a sensor within its tolerance, times the number of hypotheses looked at
     p: float
-    tests: tuple
+    tests: tuple  # of str; names of the tests it holds for
 
     @property
     def standard_error(self):

@@ -25,23 +25,17 @@ class Unknowns:
     ----------
     columns : sequence of Column
     n_sensors, n_tests : int
-
-    Attributes
-    ----------
-    numbers : dict of Column to int array, shape (n_tests or 1, n_sensors, components)
-        Of the unknowns in the vector.
-    spread : float64 array
-        Standard deviation of each before anything is read.
     """
 
     def __init__(self, columns, n_sensors, n_tests):
+        # numbers of the unknowns in the vector: Column to int array, shape (n_tests or 1, n_sensors, components)
         self.numbers, tolerances = {}, [np.empty(0)]
         for column in columns:
             shape = n_tests if column.by_test else 1, n_sensors, column.components
             first = sum(map(len, tolerances))
             self.numbers[column] = first + np.arange(np.prod(shape)).reshape(shape)
             tolerances.append(np.full(np.prod(shape), column.tolerance))
-        self.spread = np.concatenate(tolerances) / 2.0
+        self.spread = np.concatenate(tolerances) / 2.0  # standard deviation of each before anything is read
 
     def of(self, fault):
         """Numbers of a fault's unknowns."""
@@ -67,24 +61,16 @@ class Unknowns:
 
 
 class Equations(NamedTuple):
-    """Normal equations of the unknowns.
+    """Normal equations of the unknowns."""
 
-    Attributes
-    ----------
-    normal, right : float64 arrays, shapes (n, n), (n,)
-    variance : float
-        Of a reading; NaN where too little was read.
-    faults : dict of Fault to (numbers, trials)
-        Unknowns of a fault that the readings tell of, and among how many forms the best one was chosen.
-    freedom : float
-        Degrees of freedom behind the variance.
-    """
-
+    # normal, right: float64 (n, n), (n,)
     normal: np.ndarray
     right: np.ndarray
-    variance: float
+    variance: float  # of a reading; NaN where too little was read
+    # Fault to (numbers, trials); unknowns of a fault that the readings tell of, and among how many forms the
+    # best one was chosen
     faults: dict
-    freedom: float = np.inf
+    freedom: float = np.inf  # degrees of freedom behind the variance
 
     def posterior(self, spread):
         """Mean and covariance of the unknowns, shapes (n,), (n, n), with their spread before anything is read."""

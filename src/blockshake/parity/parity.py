@@ -35,37 +35,23 @@ _TABLES = {
 
 @dataclass(frozen=True)
 class Parity:
-    """Outcome of the parity checks.
+    """Outcome of the parity checks."""
 
-    Attributes
-    ----------
-    findings : tuple of Finding
-    markers : xarray.Dataset
-        ``noise(marker)`` of the readings after the findings are taken out and ``misfit(marker)`` before [m]; NaN on
-        bodies with fewer than three markers.
-    clock : xarray.Dataset
-        ``lag(test)`` of the optical clock, with ``lag_error(test)`` [s].
-    channels : xarray.Dataset
-        ``gain(channel)`` of every channel, reading over truth less 1, with ``gain_error(channel)`` [1]; NaN where the
-        markers do not tell it.
-    transducers : xarray.Dataset
-        ``gain(transducer)`` of displacement transducers, with ``gain_error(transducer)`` [1]; NaN where markers do not
-        see both ends, or the bodies hardly moved apart.
-    looked_at : int
-        Number of hypotheses.
-    falls : dict of str to Fall
-        By test: the block that fell first; the test is judged until then.
-    gaps : dict of str to list of str
-        By test: lines on the readings that were taken as gaps, and on a record that is too short.
-    """
-
-    findings: tuple
+    findings: tuple  # of Finding
+    # xarray.Dataset; ``noise(marker)`` of the readings after the findings are taken out and
+    # ``misfit(marker)`` before [m]; NaN on bodies with fewer than three markers
     markers: xr.Dataset
-    clock: xr.Dataset
+    clock: xr.Dataset  # xarray.Dataset; ``lag(test)`` of the optical clock, with ``lag_error(test)`` [s]
+    # xarray.Dataset; ``gain(channel)`` of every channel, reading over truth less 1, with
+    # ``gain_error(channel)`` [1]; NaN where the markers do not tell it
     channels: xr.Dataset
+    # xarray.Dataset; ``gain(transducer)`` of displacement transducers, with ``gain_error(transducer)`` [1];
+    # NaN where markers do not see both ends, or the bodies hardly moved apart
     transducers: xr.Dataset
-    looked_at: int
-    falls: dict
+    looked_at: int  # number of hypotheses
+    falls: dict  # str to Fall; by test: the block that fell first; the test is judged until then
+    # str to list of str; by test: lines on the readings that were taken as gaps, and on a record that is too
+    # short
     gaps: dict
 
     def as_json(self):

@@ -11,18 +11,12 @@ _FEWEST_SEGMENTS = 4  # that carry the information
 
 @dataclass(frozen=True)
 class Size:
-    """A linear estimate.
+    """A linear estimate."""
 
-    Attributes
-    ----------
-    estimate, covariance : float64 arrays, shapes (n,), (n, n)
-    freedom : float
-        Degrees of freedom behind the covariance.
-    """
-
+    # estimate, covariance: float64 (n,), (n, n)
     estimate: np.ndarray
     covariance: np.ndarray
-    freedom: float
+    freedom: float  # degrees of freedom behind the covariance
 
     def part(self, index):
         """One component alone."""

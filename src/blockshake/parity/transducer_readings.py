@@ -23,30 +23,16 @@ _SHIFTS = 4  # Gauss-Newton steps to the lag of the clocks
 
 @dataclass(frozen=True)
 class HeldReading:
-    """One transducer in one test beside what the markers say of it, as means over a tenth of a second.
+    """One transducer in one test beside what the markers say of it, as means over a tenth of a second."""
 
-    Attributes
-    ----------
-    time : float64 array, shape (n_means,)
-        Of the markers [s].
-    misfit : float64 array, shape (n_means,)
-        Reading less expectation [m].
-    expected : float64 array, shape (n_means,)
-        From the poses of both bodies [m]: the column of a gain.
-    places : float64 array, shape (n_means, 6)
-        Change of the expectation with the place of either end in the frame of its body [1].
-    late : float64 array, shape (n_means,)
-        Change of the reading with a lag of the optical clock [m/s].
-    noise : float
-        Standard deviation of the expectation's own error [m].
-    """
-
-    time: np.ndarray
-    misfit: np.ndarray
-    expected: np.ndarray
+    time: np.ndarray  # float64 (n_means,); of the markers [s]
+    misfit: np.ndarray  # float64 (n_means,); reading less expectation [m]
+    expected: np.ndarray  # float64 (n_means,); from the poses of both bodies [m]: the column of a gain
+    # float64 (n_means, 6); change of the expectation with the place of either end in the frame of its body
+    # [1]
     places: np.ndarray
-    late: np.ndarray
-    noise: float
+    late: np.ndarray  # float64 (n_means,); change of the reading with a lag of the optical clock [m/s]
+    noise: float  # standard deviation of the expectation's own error [m]
 
     def reversed(self):
         """The reading with its sign turned."""

@@ -38,53 +38,30 @@ class Perturbation(NamedTuple):
 class Model:
     """A model of the blocks' contact and motion.
 
-    Attributes
-    ----------
-    name : str
-        As in ``--model`` and in a study's configuration.
-    label : str
-        As reports print it.
-    prefix : str
-        Of the dotted names of its numerical parameters.
-    time_step : float
-        Default [s].
-    driver : str
-        ``module:function`` that runs it: ``(structure, motion, parameters, record_times, time_step, checkpoint=)``
-        to a `Trajectory`.
-    parameters : str
-        ``module:class`` of its numerical parameters.
-    refusal : str
-        ``module:function`` that refuses, of a structure and numerical parameters, what the driver would.
-    calibrated : tuple of str
-        Those of them that a wave test gives from the material, as its contact stiffness.
-    own_stiffness : str or None
-        ``module:function`` that gives their defaults for a structure: ``(structure)`` to a dict.
-    without_effect : tuple of str
-        Last parts of the names of parameters that the model has no use for.
-    needed : tuple of str
-        Properties of the materials of free blocks that are above 0.
-    rigid : bool
-        Its blocks do not deform.
-    perturbation : Perturbation or None
-        None leaves the model out of the null hypothesis of a diagnosis.
-
     Notes
     -----
     The driver and the class are named, not imported: a job that runs one solver neither imports nor watches the other.
     """
 
-    name: str
-    label: str
-    prefix: str
-    time_step: float
+    name: str  # as in ``--model`` and in a study's configuration
+    label: str  # as reports print it
+    prefix: str  # of the dotted names of its numerical parameters
+    time_step: float  # default [s]
+    # ``module:function`` that runs it: ``(structure, motion, parameters, record_times, time_step,
+    # checkpoint=)`` to a `Trajectory`
     driver: str
-    parameters: str
+    parameters: str  # ``module:class`` of its numerical parameters
+    # ``module:function`` that refuses, of a structure and numerical parameters, what the driver would
     refusal: str
+    # those of them that a wave test gives from the material, as its contact stiffness
     calibrated: tuple[str, ...] = ()
+    # ``module:function`` that gives their defaults for a structure: ``(structure)`` to a dict
     own_stiffness: str | None = None
+    # last parts of the names of parameters that the model has no use for
     without_effect: tuple[str, ...] = ()
-    needed: tuple[str, ...] = ()
-    rigid: bool = True
+    needed: tuple[str, ...] = ()  # properties of the materials of free blocks that are above 0
+    rigid: bool = True  # its blocks do not deform
+    # None leaves the model out of the null hypothesis of a diagnosis
     perturbation: Perturbation | None = None
 
     def solve(self, *arguments, **options):

@@ -17,20 +17,11 @@ AT_HAND = 2**14  # rows of the record in memory: tens of MiB
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """Place of a run on disk, or none.
+    """Place of a run on disk, or none."""
 
-    Attributes
-    ----------
-    path : path or None
-        None keeps nothing.
-    key : str
-        From `run_key`: a file of another run is not read.
-    kinds : tuple of type
-        Of the parts of the run, in their order: arrays, and named tuples of arrays or of other named tuples.
-    """
-
-    path: Path | str | None
-    key: str
+    path: Path | str | None  # None keeps nothing
+    key: str  # from `run_key`: a file of another run is not read
+    # of the parts of the run, in their order: arrays, and named tuples of arrays or of other named tuples
     kinds: tuple[type, ...]
 
     def save(self, parts):

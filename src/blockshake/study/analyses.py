@@ -39,30 +39,19 @@ def _cases_of_stiffness(study):
 
 
 class Analysis(NamedTuple):
-    """An analysis of a study.
-
-    Attributes
-    ----------
-    name : str
-    file : str
-        Its result, below the folder of the study's results: one for each ``{case}`` and ``{model}`` that is in it.
-    load : callable
-        Reads it.
-    cases : callable or None
-        Names of the cases that have it, from the configuration as a mapping; None for one of the study as a whole,
-        which no report of a case alone has.
-    settings : str or None
-        Key of the configuration without which a study has not got it.
-    check : callable or None
-        Refuses settings by which it cannot be made: of the settings, the `StudyConfig`, its structures by name and the
-        file to name.
-    """
+    """An analysis of a study."""
 
     name: str
+    # its result, below the folder of the study's results: one for each ``{case}`` and ``{model}`` that is in
+    # it
     file: str
-    load: Callable = load_made
+    load: Callable = load_made  # reads it
+    # names of the cases that have it, from the configuration as a mapping; None for one of the study as a
+    # whole, which no report of a case alone has
     cases: Callable | None = _every_case
-    settings: str | None = None
+    settings: str | None = None  # key of the configuration without which a study has not got it
+    # refuses settings by which it cannot be made: of the settings, the `StudyConfig`, its structures by name
+    # and the file to name
     check: Callable | None = None
 
     def files(self, study, only=None):

@@ -26,39 +26,22 @@ COARSENING = 0.05  # share of what it explains that the form of a cause may leav
 
 @dataclass(frozen=True)
 class Rival:
-    """A cause with its best place.
-
-    Attributes
-    ----------
-    cause : str
-    place : str
-    gain : float
-        Logarithm of the evidence over none, averaged over the places.
-    score : float
-        The same with the prior, and of a free force the share that a form must explain.
-    places : tuple of str
-        Places that cannot be told apart.
-    """
+    """A cause with its best place."""
 
     cause: str
     place: str
-    gain: float
-    score: float
-    places: tuple
+    gain: float  # logarithm of the evidence over none, averaged over the places
+    score: float  # the same with the prior, and of a free force the share that a form must explain
+    places: tuple  # of str; places that cannot be told apart
 
 
 @dataclass(frozen=True)
 class Group:
-    """Causes that cannot be told apart in one part of the readings, the likeliest first.
+    """Causes that cannot be told apart in one part of the readings, the likeliest first."""
 
-    Attributes
-    ----------
-    rivals : tuple of Rival
-    odds, gains : dict of str to float
-        Of the first over each cause, as a logarithm, coarsened; and of each over none.
-    """
-
-    rivals: tuple
+    rivals: tuple  # of Rival
+    # odds, gains: str to float; of the first over each cause, as a logarithm, coarsened; and of each over
+    # none
     odds: dict
     gains: dict
 

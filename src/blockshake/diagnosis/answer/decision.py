@@ -38,37 +38,20 @@ class Measurement(Strict):
 
 
 class Cause(Strict):
-    """A cause that the readings speak for, at its likeliest place.
+    """A cause that the readings speak for, at its likeliest place."""
 
-    Attributes
-    ----------
-    name : str
-        Effect of the registry, or form from outside.
-    place : dict
-        ``{"joint": [lower, upper]}``, ``{"body": name}`` and what else says where, empty of a cause that is everywhere.
-    places : tuple of str
-        In words, all that cannot be told from it.
-    gain : float
-        Logarithm of its evidence over that of none.
-    odds : float
-        Of the likeliest cause over this one, as a logarithm, coarsened.
-    parameters : dict of str to Estimate
-    members : tuple of dict
-        Parameters drawn from their posterior, in a fixed random order.
-    when : dict
-        The likeliest variant: parameters that are no amplitudes; of a form from outside starts, sides and tests.
-    amplitudes : tuple of float
-        Of the variant, at their best: what its rows on further tests are multiplied with.
-    """
-
-    name: str
+    name: str  # effect of the registry, or form from outside
+    # ``{"joint": [lower, upper]}``, ``{"body": name}`` and what else says where, empty of a cause that is
+    # everywhere
     place: dict[str, JsonValue]
-    places: tuple[str, ...]
-    gain: Finite
-    odds: Finite
+    places: tuple[str, ...]  # in words, all that cannot be told from it
+    gain: Finite  # logarithm of its evidence over that of none
+    odds: Finite  # of the likeliest cause over this one, as a logarithm, coarsened
     parameters: dict[str, Estimate]
-    members: tuple[dict[str, Finite], ...]
+    members: tuple[dict[str, Finite], ...]  # parameters drawn from their posterior, in a fixed random order
+    # the likeliest variant: parameters that are no amplitudes; of a form from outside starts, sides and tests
     when: dict[str, JsonValue] = Field(default_factory=dict)
+    # of the variant, at their best: what its rows on further tests are multiplied with
     amplitudes: tuple[Finite, ...] = ()
 
     @property
@@ -83,26 +66,15 @@ class Cause(Strict):
 
 
 class Part(Strict):
-    """One part of the readings that something acts on: the causes that cannot be told apart, the likeliest first.
+    """One part of the readings that something acts on: the causes that cannot be told apart, the likeliest first."""
 
-    Attributes
-    ----------
-    readings : str
-        ``joints``, ``joints, beside the first``, ``impacts``, ``free flight``, ``rotation of the slab`` or ``vertical
-        motion of the slab``.
-    causes : tuple of Cause
-    odds : dict of str to float
-        Of the likeliest over every rival, as a logarithm, coarsened.
-    gains : dict of str to float
-        Logarithm of the evidence over none, by rival.
-    next_tests : tuple of Measurement
-        That would split the causes, by falling share; empty of a single one.
-    """
-
+    # ``joints``, ``joints, beside the first``, ``impacts``, ``free flight``, ``rotation of the slab`` or
+    # ``vertical motion of the slab``
     readings: str
     causes: tuple[Cause, ...]
-    odds: dict[str, Finite]
-    gains: dict[str, Finite]
+    odds: dict[str, Finite]  # of the likeliest over every rival, as a logarithm, coarsened
+    gains: dict[str, Finite]  # logarithm of the evidence over none, by rival
+    # that would split the causes, by falling share; empty of a single one
     next_tests: tuple[Measurement, ...] = ()
 
     @property
@@ -117,80 +89,41 @@ class Part(Strict):
 
 
 class History(Strict):
-    """A size by test, in the order of the campaign: of a cause, or of sound joints.
+    """A size by test, in the order of the campaign: of a cause, or of sound joints."""
 
-    Attributes
-    ----------
-    quantity : str
-        Name of the cause, or ``edges``, ``middle`` or ``friction``.
-    parameter : str
-        Name of the size.
-    place : dict
-        As of `Cause`; empty of all joints together.
-    tests : tuple of str
-    sizes : tuple of Estimate
-        Of each test alone, under one prior.
-    gain : float
-        Logarithm of the evidence of sizes that walk from test to test over that of one size for all.
-    changes : bool
-        It is more than a chance.
-    beats : str
-        Name of a cause of which these sizes, without it, explain more than it does; else empty.
-    """
-
-    quantity: str
-    parameter: str
-    place: dict[str, JsonValue]
+    quantity: str  # name of the cause, or ``edges``, ``middle`` or ``friction``
+    parameter: str  # name of the size
+    place: dict[str, JsonValue]  # as of `Cause`; empty of all joints together
     tests: tuple[str, ...]
-    sizes: tuple[Estimate, ...]
+    sizes: tuple[Estimate, ...]  # of each test alone, under one prior
+    # logarithm of the evidence of sizes that walk from test to test over that of one size for all
     gain: Finite
-    changes: bool
-    beats: str = ""
+    changes: bool  # it is more than a chance
+    beats: str = ""  # name of a cause of which these sizes, without it, explain more than it does; else empty
 
 
 class Decision(Strict):
-    """The whole file.
+    """The whole file."""
 
-    Attributes
-    ----------
-    decision : str
-        Kind of the answer.
-    parts : tuple of Part
-        By falling strength; empty where nothing acts.
-    probabilities : dict of str to float
-        Of every effect of the registry: in its part, among all rivals and none, coarsened.
-    limits : dict of str to dict of str to float
-        By effect and place: the size from which it would have been seen; places where the tests do not tell are left
-        out.
-    excluded_above : dict of str to float
-        The same of effects that would have been seen wherever they may be: the largest of the places.
-    p : float
-        Largest chance of as much evidence against none, by Markov's inequality.
-    where : str
-        The largest departure in words.
-    tests, silent : tuple of str
-        Tests that were judged by, and those among them of which no joint turned, slipped or lifted.
-    impacts : str
-        Statement on the share of spin that impacts kept.
-    cannot_see : tuple of str
-        What the sensors do not show.
-    histories : tuple of History
-        Sizes from test to test.
-    """
-
-    decision: Literal["none", "named", "ambiguous", "combination", "unknown"]
-    parts: tuple[Part, ...]
+    decision: Literal["none", "named", "ambiguous", "combination", "unknown"]  # kind of the answer
+    parts: tuple[Part, ...]  # by falling strength; empty where nothing acts
+    # of every effect of the registry: in its part, among all rivals and none, coarsened
     probabilities: dict[str, Fraction]
+    # by effect and place: the size from which it would have been seen; places where the tests do not tell are
+    # left out
     limits: dict[str, dict[str, Finite]]
+    # the same of effects that would have been seen wherever they may be: the largest of the places
     excluded_above: dict[str, Finite]
-    p: Fraction
-    where: str
+    p: Fraction  # largest chance of as much evidence against none, by Markov's inequality
+    where: str  # the largest departure in words
+    # tests, silent: tests that were judged by, and those among them of which no joint turned, slipped or
+    # lifted
     tests: tuple[str, ...]
     silent: tuple[str, ...]
     n_rows: Count
-    impacts: str = ""
-    cannot_see: tuple[str, ...] = ()
-    histories: tuple[History, ...] = ()
+    impacts: str = ""  # statement on the share of spin that impacts kept
+    cannot_see: tuple[str, ...] = ()  # what the sensors do not show
+    histories: tuple[History, ...] = ()  # sizes from test to test
 
     @property
     def moved(self):

@@ -53,20 +53,11 @@ def likelihoods(tests, noises=NOISES, discrepancies=DISCREPANCIES):
 
 @dataclass(frozen=True)
 class Tried:
-    """All that is tried on tests with rows: made once, for every likelihood.
+    """All that is tried on tests with rows: made once, for every likelihood."""
 
-    Attributes
-    ----------
-    tests : list of JointRows
-    points : list of Points
-        At which forces from outside are tried.
-    variants : dict of (str, str) to list of list of Columns
-        By effect and place, by variant and test.
-    """
-
-    tests: list
-    points: list
-    variants: dict
+    tests: list  # of JointRows
+    points: list  # of Points; at which forces from outside are tried
+    variants: dict  # (str, str) to list of list of Columns; by effect and place, by variant and test
 
 
 def all_tried(tests, without):
@@ -131,17 +122,10 @@ def _from_outside(likelihood, tests, points):
 
 @dataclass(frozen=True)
 class Evidence:
-    """Explanations of all rows beside several likelihoods.
-
-    Attributes
-    ----------
-    tried : Tried
-    explained : list of Explained
-        By likelihood.
-    """
+    """Explanations of all rows beside several likelihoods."""
 
     tried: Tried
-    explained: list
+    explained: list  # of Explained; by likelihood
 
     @property
     def tests(self):
@@ -238,21 +222,12 @@ def gather_evidence(seen, without=()):
 
 @dataclass(frozen=True)
 class Points:
-    """A point of one body in all tests.
+    """A point of one body in all tests."""
 
-    Attributes
-    ----------
-    place : str
-        Body, and height above its centre over its own height.
-    body : int
-    by_test : list of PointRows
-    tests : list of str
-    """
-
-    place: str
+    place: str  # body, and height above its centre over its own height
     body: int
-    by_test: list
-    tests: list
+    by_test: list  # of PointRows
+    tests: list  # of str
 
 
 def force_points(tests):

@@ -11,31 +11,15 @@ _NEGLIGIBLE = 12.0  # nats below the best variant
 
 @dataclass(frozen=True)
 class Fit:
-    """One variant of a cause at a place, its amplitudes fitted.
+    """One variant of a cause at a place, its amplitudes fitted."""
 
-    Attributes
-    ----------
-    values : dict
-        What the variant is: parameters that are not amplitudes.
-    gain : float
-        Logarithm of the evidence over that of no cause.
-    columns : list of float64 array, shape (n_rows, n_amplitudes)
-        By test.
-    scales : float64 array, shape (n_amplitudes,)
-        Standard deviations of the amplitudes' priors.
-    mean : float64 array, shape (n_amplitudes,)
-    covariance : float64 array, shape (n_amplitudes, n_amplitudes)
-    positive : bool
-        The first amplitude is not negative.
-    """
-
-    values: dict
-    gain: float
-    columns: list
-    scales: np.ndarray
-    mean: np.ndarray
-    covariance: np.ndarray
-    positive: bool = False
+    values: dict  # what the variant is: parameters that are not amplitudes
+    gain: float  # logarithm of the evidence over that of no cause
+    columns: list  # of float64 array, shape (n_rows, n_amplitudes); by test
+    scales: np.ndarray  # float64 (n_amplitudes,); standard deviations of the amplitudes' priors
+    mean: np.ndarray  # float64 (n_amplitudes,)
+    covariance: np.ndarray  # float64 (n_amplitudes, n_amplitudes)
+    positive: bool = False  # the first amplitude is not negative
 
     @property
     def contrast(self):
@@ -49,26 +33,13 @@ class Fit:
 
 @dataclass(frozen=True)
 class Explanation:
-    """A cause at a place beside one likelihood.
+    """A cause at a place beside one likelihood."""
 
-    Attributes
-    ----------
-    cause : str
-        An effect of the registry, or a form from outside.
-    place : str
-        Where it acts.
-    gain : float
-        Logarithm of the evidence over that of no cause, averaged over what is searched.
-    fits : tuple of Fit
-        Variants that matter.
-    gains : float64 array, shape (n_variants,)
-        By variant, before the average; empty where a search has no fixed variants.
-    """
-
-    cause: str
-    place: str
-    gain: float
-    fits: tuple
+    cause: str  # an effect of the registry, or a form from outside
+    place: str  # where it acts
+    gain: float  # logarithm of the evidence over that of no cause, averaged over what is searched
+    fits: tuple  # of Fit; variants that matter
+    # float64 (n_variants,); by variant, before the average; empty where a search has no fixed variants
     gains: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
     @cached_property

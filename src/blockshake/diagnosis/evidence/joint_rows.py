@@ -20,42 +20,28 @@ from blockshake.geometry.rotations import rotation_matrices
 
 @dataclass(frozen=True)
 class Hinge:
-    """A face that turns about an edge, which lies off its middle along one of its tangents.
+    """A face that turns about an edge, which lies off its middle along one of its tangents."""
 
-    Attributes
-    ----------
-    inward, along : float64 arrays, shape (n_rows,)
-        In the rows: edges 1 m further in, and edges 1 m further along the tangent [N m/m].
-    edge : int8 array, shape (n_rows,)
-        Edge that bears.
-    turn, normal : float64 arrays, shape (n_rows,)
-        Rotation without its sign [rad], and normal force [N].
-    bed : float64 array, shape (n_rows,)
-        `bed_inset` of faces as soft as the two blocks, at the least rotation that counts as turned [m].
-    """
-
+    # inward, along: float64 (n_rows,); in the rows: edges 1 m further in, and edges 1 m further along the
+    # tangent [N m/m]
     inward: np.ndarray
     along: np.ndarray
-    edge: np.ndarray
+    edge: np.ndarray  # int8 (n_rows,); edge that bears
+    # turn, normal: float64 (n_rows,); rotation without its sign [rad], and normal force [N]
     turn: np.ndarray
     normal: np.ndarray
+    # float64 (n_rows,); `bed_inset` of faces as soft as the two blocks, at the least rotation that counts as
+    # turned [m]
     bed: np.ndarray
 
 
 @dataclass(frozen=True)
 class Slide:
-    """A face that slips.
+    """A face that slips."""
 
-    Attributes
-    ----------
-    friction : float64 array, shape (n_rows,)
-        In the rows: a coefficient of friction of 1 against the slip [N, N m].
-    rate : float64 array, shape (n_rows,)
-        Slip rate without its sign [m/s].
-    """
-
+    # float64 (n_rows,); in the rows: a coefficient of friction of 1 against the slip [N, N m]
     friction: np.ndarray
-    rate: np.ndarray
+    rate: np.ndarray  # float64 (n_rows,); slip rate without its sign [m/s]
 
 
 @dataclass(frozen=True)

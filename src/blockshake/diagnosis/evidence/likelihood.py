@@ -11,41 +11,21 @@ from scipy.special import log_ndtr
 
 @dataclass(frozen=True)
 class Amplitudes:
-    """Posterior of the amplitudes of some columns, and what they gain.
+    """Posterior of the amplitudes of some columns, and what they gain."""
 
-    Attributes
-    ----------
-    gain : float
-        Logarithm of the evidence over that of no column.
-    mean : float64 array, shape (n_columns,)
-    covariance : float64 array, shape (n_columns, n_columns)
-    """
-
-    gain: float
-    mean: np.ndarray
-    covariance: np.ndarray
+    gain: float  # logarithm of the evidence over that of no column
+    mean: np.ndarray  # float64 (n_columns,)
+    covariance: np.ndarray  # float64 (n_columns, n_columns)
 
 
 @dataclass(frozen=True)
 class Likelihood:
-    """Rows of all tests in units of their covariance.
+    """Rows of all tests in units of their covariance."""
 
-    Attributes
-    ----------
-    roots : list of float64 array, shape (n_rows, n_rows)
-        Lower roots of the tests' covariances.
-    value : float64 array, shape (n_all_rows,)
-        Whitened rows.
-    nuisances : float64 array, shape (n_all_rows, n_nuisances)
-        Whitened, with standard normal amplitudes.
-    prior : float
-        Logarithm of the prior of this likelihood among others.
-    """
-
-    roots: list
-    value: np.ndarray
-    nuisances: np.ndarray
-    prior: float
+    roots: list  # of float64 array, shape (n_rows, n_rows); lower roots of the tests' covariances
+    value: np.ndarray  # float64 (n_all_rows,); whitened rows
+    nuisances: np.ndarray  # float64 (n_all_rows, n_nuisances); whitened, with standard normal amplitudes
+    prior: float  # logarithm of the prior of this likelihood among others
 
     @cached_property
     def ends(self):

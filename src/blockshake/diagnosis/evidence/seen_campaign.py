@@ -12,21 +12,11 @@ from blockshake.parity.parity import Parity, campaign_parity
 
 
 class SeenCampaign(NamedTuple):
-    """Tests of a campaign as they are judged.
+    """Tests of a campaign as they are judged."""
 
-    Attributes
-    ----------
-    parity : Parity
-        Findings on the sensors, falls of blocks, and gaps.
-    tests : list of SeenTest
-        Faults of sensors and outliers taken out, until a block falls.
-    unseen : dict of str to str
-        Reason why no forces can be read of a test, by its name.
-    """
-
-    parity: Parity
-    tests: list
-    unseen: dict
+    parity: Parity  # findings on the sensors, falls of blocks, and gaps
+    tests: list  # of SeenTest; faults of sensors and outliers taken out, until a block falls
+    unseen: dict  # str to str; reason why no forces can be read of a test, by its name
 
 
 def see_campaign(campaign, without=()):

@@ -26,35 +26,25 @@ _FREE_SHARE, _FREE_MEMORY = 0.1, 0.15  # of the vertical motion, s: what of it d
 
 @dataclass(frozen=True)
 class SlabMotion:
-    """Motion of the first driven body in one test, at uniform times.
+    """Motion of the first driven body in one test, at uniform times."""
 
-    Attributes
-    ----------
-    time, turn, lift, travel : float64 arrays, shape (n_times,)
-        Rotation about y, vertical displacement, and displacement along x, from rest [s, rad, m, m].
-    acceleration, moment, force : float64 arrays, shape (n_times,)
-        Of the slab along x; on its base, by what stands on it and by its own inertia along x: about y through the
-        middle of its bottom; and by what stands on it, downwards. From rest [m/s2, N m, N]; zero where unknown;
-        smoothed as displacements are.
-    at : int array
-        Instants that are compared.
-    turn_noise, lift_noise : float
-        [rad, m]
-    width : float
-        Of the smoothing kernel [s].
-    """
-
+    # time, turn, lift, travel: float64 (n_times,); rotation about y, vertical displacement, and displacement
+    # along x, from rest [s, rad, m, m]
     time: np.ndarray
     turn: np.ndarray
     lift: np.ndarray
     travel: np.ndarray
+    # acceleration, moment, force: float64 (n_times,); of the slab along x; on its base, by what stands on it
+    # and by its own inertia along x: about y through the middle of its bottom; and by what stands on it,
+    # downwards. From rest [m/s2, N m, N]; zero where unknown; smoothed as displacements are
     acceleration: np.ndarray
     moment: np.ndarray
     force: np.ndarray
-    at: np.ndarray
+    at: np.ndarray  # int array; instants that are compared
+    # turn_noise, lift_noise: [rad, m]
     turn_noise: float
     lift_noise: float
-    width: float
+    width: float  # of the smoothing kernel [s]
 
     @property
     def step(self):

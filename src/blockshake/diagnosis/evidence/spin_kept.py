@@ -20,22 +20,13 @@ _TAILS = 0.05, 0.5, 0.95
 
 
 class SpinKept(NamedTuple):
-    """Share of the spin that the impacts of a campaign keep.
+    """Share of the spin that the impacts of a campaign keep."""
 
-    Attributes
-    ----------
-    gain : float
-        Logarithm of the evidence that less is lost than in any sound model, over that of none; 0 without impacts.
-    estimate : float
-        Mean share of the spin kept [1]; NaN without impacts.
-    interval : tuple of float
-        Its 90 % interval.
-    statement : str
-    """
-
+    # logarithm of the evidence that less is lost than in any sound model, over that of none; 0 without
+    # impacts
     gain: float
-    estimate: float
-    interval: tuple
+    estimate: float  # mean share of the spin kept [1]; NaN without impacts
+    interval: tuple  # of float; its 90 % interval
     statement: str
 
 

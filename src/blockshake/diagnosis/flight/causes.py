@@ -24,34 +24,17 @@ _AIR, _DRAG_COEFFICIENT, _UNSURE = 1.2, 1.05, 0.5  # kg/m3; of a cube (Hoerner 1
 
 @dataclass(frozen=True)
 class FlightCause:
-    """A cause as a registered effect or a form from outside, by its paths in a flight.
+    """A cause as a registered effect or a form from outside, by its paths in a flight."""
 
-    Attributes
-    ----------
-    name, title : str
-        As in ``verdict.json``, and in words.
-    sizes : tuple of (str, str)
-        Name and unit of each amplitude.
-    paths : callable
-        Of an `Arc` and the `PosedCampaign`: (n, n_amplitudes, 3), per unit of the amplitudes.
-    scale : callable
-        Of the `PosedCampaign`: standard deviation of the amplitudes' prior.
-    positive : bool
-        The amplitude is not negative.
-    sound : callable
-        Of the `PosedCampaign`: size up to which sound tests have it.
-    alias : str
-        Sentence on what flies alike; empty where nothing does.
-    """
-
+    # name, title: as in ``verdict.json``, and in words
     name: str
     title: str
-    sizes: tuple
-    paths: Callable
-    scale: Callable
-    positive: bool = False
-    sound: Callable = lambda posed: 0.0
-    alias: str = ""
+    sizes: tuple  # of (str, str); name and unit of each amplitude
+    paths: Callable  # of an `Arc` and the `PosedCampaign`: (n, n_amplitudes, 3), per unit of the amplitudes
+    scale: Callable  # of the `PosedCampaign`: standard deviation of the amplitudes' prior
+    positive: bool = False  # the amplitude is not negative
+    sound: Callable = lambda posed: 0.0  # of the `PosedCampaign`: size up to which sound tests have it
+    alias: str = ""  # sentence on what flies alike; empty where nothing does
 
 
 def _mass(posed):

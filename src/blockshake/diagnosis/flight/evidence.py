@@ -15,23 +15,12 @@ _ROUNDS = 4  # of weighing the flights
 
 @dataclass(frozen=True)
 class FlightRows:
-    """Rows of all flights, a block for each flight and filmed axis, and their likelihood.
+    """Rows of all flights, a block for each flight and filmed axis, and their likelihood."""
 
-    Attributes
-    ----------
-    posed : PosedCampaign
-    arcs : list of Arc
-    values : list of float64 array, shape (n_rows,)
-        Positions less a free fall in air [m].
-    noise : float
-        Of a coordinate [m].
-    likelihood : Likelihood
-    """
-
-    posed: object
-    arcs: list
-    values: list
-    noise: float
+    posed: object  # PosedCampaign
+    arcs: list  # of Arc
+    values: list  # of float64 array, shape (n_rows,); positions less a free fall in air [m]
+    noise: float  # of a coordinate [m]
     likelihood: Likelihood
 
     def columns(self, paths):
@@ -61,22 +50,12 @@ class FlightRows:
 
 @dataclass(frozen=True)
 class FlightFit:
-    """A cause beside the rows.
+    """A cause beside the rows."""
 
-    Attributes
-    ----------
-    cause : FlightCause
-    gain : float
-        Logarithm of its evidence over that of none.
-    sizes : float64 array, shape (n_sizes,)
-        The likeliest ones.
-    covariance : float64 array, shape (n_sizes, n_sizes)
-    """
-
-    cause: object
-    gain: float
-    sizes: np.ndarray
-    covariance: np.ndarray
+    cause: object  # FlightCause
+    gain: float  # logarithm of its evidence over that of none
+    sizes: np.ndarray  # float64 (n_sizes,); the likeliest ones
+    covariance: np.ndarray  # float64 (n_sizes, n_sizes)
 
     @property
     def size(self):

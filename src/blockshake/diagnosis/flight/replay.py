@@ -19,24 +19,14 @@ MODEL = "nscd-rigid"
 
 @dataclass(frozen=True)
 class FlightModel:
-    """A model of the tests.
+    """A model of the tests."""
 
-    Attributes
-    ----------
-    friction, restitution : float
-        Of the body on the ground; Newton's [1].
-    fits : tuple of FlightFit
-        Causes in it.
-    shift : tuple of float
-        Steady acceleration without a name [m/s2].
-    inertia : tuple of float
-        Logarithms of the moments along the body's axes over those of the structure file.
-    """
-
+    # friction, restitution: of the body on the ground; Newton's [1]
     friction: float
     restitution: float
-    fits: tuple = ()
-    shift: tuple = (0.0, 0.0, 0.0)
+    fits: tuple = ()  # of FlightFit; causes in it
+    shift: tuple = (0.0, 0.0, 0.0)  # of float; steady acceleration without a name [m/s2]
+    # of float; logarithms of the moments along the body's axes over those of the structure file
     inertia: tuple = (0.0, 0.0, 0.0)
 
 

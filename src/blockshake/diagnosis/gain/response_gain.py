@@ -16,24 +16,15 @@ _CONFIRMING_SHARE = 0.5  # share of the fall that each solver must show by itsel
 
 @dataclass(frozen=True)
 class _Cells:
-    """Cells of all tests that are judged, side by side; the first row of every weight is that of all, once each.
+    """Cells of all tests that are judged, side by side; the first row of every weight is that of all, once each."""
 
-    Attributes
-    ----------
-    away : dict of str to float64 array, shape (n_members, n_cells)
-        By kind: mean differences of the members from the record, in units of the cell's spread.
-    pairs : dict of str to float64 array, shape (n_members, n_members, n_cells)
-        The same of the members from each other.
-    weights : float64 array, shape (n_draws, n_cells)
-        Of a mean over tests of the mean over cells; sum 1.
-    members : float64 array, shape (n_draws, n_members)
-        How often each is drawn.
-    """
-
+    # str to float64 array, shape (n_members, n_cells); by kind: mean differences of the members from the
+    # record, in units of the cell's spread
     away: dict
+    # str to float64 array, shape (n_members, n_members, n_cells); the same of the members from each other
     pairs: dict
-    weights: np.ndarray
-    members: np.ndarray
+    weights: np.ndarray  # float64 (n_draws, n_cells); of a mean over tests of the mean over cells; sum 1
+    members: np.ndarray  # float64 (n_draws, n_members); how often each is drawn
 
     def score(self, kind):
         """Score of an ensemble, (n_draws,)."""

@@ -22,27 +22,17 @@ _SHARE_OF_MOTION = 0.3  # of the farthest that a cell has moved until then
 
 @dataclass(frozen=True)
 class JudgedTest:
-    """One test.
-
-    Attributes
-    ----------
-    name : str
-    measured : xarray.DataArray, (time, cell)
-        Cells of `as_cells`.
-    members : dict of str to xarray.DataArray, (run, time, cell)
-        By kind, at the measured times: the members of all solvers, one solver after the other.
-    models : str array, shape (n_members,)
-        Solver of each.
-    horizon : float64 array, shape (n_cells,)
-        Until which the cells are judged [s], by the solver that can be predicted for the shortest time; of a test in
-        which half the members of an ensemble fall, until then. Minus infinity of a cell in
-        which nothing moves.
-    """
+    """One test."""
 
     name: str
-    measured: xr.DataArray
+    measured: xr.DataArray  # xarray.DataArray, (time, cell); cells of `as_cells`
+    # str to xarray.DataArray, (run, time, cell); by kind, at the measured times: the members of all solvers,
+    # one solver after the other
     members: dict
-    models: np.ndarray
+    models: np.ndarray  # str array, shape (n_members,); solver of each
+    # float64 (n_cells,); until which the cells are judged [s], by the solver that can be predicted for the
+    # shortest time; of a test in which half the members of an ensemble fall, until then. Minus infinity of a
+    # cell in which nothing moves
     horizon: np.ndarray
 
     @property

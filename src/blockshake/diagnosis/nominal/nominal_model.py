@@ -33,37 +33,19 @@ _TWIN_AMPLITUDE = 1e-3  # of the motion: how well a measured base motion is know
 
 @dataclass(frozen=True)
 class Draw:
-    """One nominal model.
+    """One nominal model."""
 
-    Attributes
-    ----------
-    model : str
-        One of `MODELS`.
-    time_step : float
-        [s]
-    parameters : dict of str to float
-        Of the structure and of the solver, by dotted name.
-    amplitude : float
-        Of the motion over the commanded one [1].
-    fast : float
-        Of what is faster in it than some 0.1 s, over the commanded one, less 1 [1].
-    noise : dict of str to float
-        ``louder``, over the stated noise [1], and the entries ``noise_memory``, ``marker_dropouts`` and
-        ``marker_outliers`` of `Instruments`.
-    places : float64 array, shape (n_bodies, 3)
-        Off the structure file: along x and y [m], turned about z [rad].
-    seed : int
-        Of the sensors' noise.
-    """
-
-    model: str
-    time_step: float
-    parameters: dict
-    amplitude: float
-    fast: float
+    model: str  # one of `MODELS`
+    time_step: float  # [s]
+    parameters: dict  # str to float; of the structure and of the solver, by dotted name
+    amplitude: float  # of the motion over the commanded one [1]
+    fast: float  # of what is faster in it than some 0.1 s, over the commanded one, less 1 [1]
+    # str to float; ``louder``, over the stated noise [1], and the entries ``noise_memory``,
+    # ``marker_dropouts`` and ``marker_outliers`` of `Instruments`
     noise: dict
+    # float64 (n_bodies, 3); off the structure file: along x and y [m], turned about z [rad]
     places: np.ndarray
-    seed: int
+    seed: int  # of the sensors' noise
 
 
 def draw_nominal(structure, model, number):

@@ -20,27 +20,13 @@ ENSEMBLES_OF_SEALED_TEST = 4  # nominal, recalibrated, extended, placebo
 
 @dataclass(frozen=True)
 class Effort:
-    """Amounts of simulation.
+    """Amounts of simulation."""
 
-    Attributes
-    ----------
-    tests : int
-        Open tests at most that are simulated.
-    draws : int
-        Nominal models of each open test, by each solver.
-    members : int
-        Of every ensemble that predicts a sealed test, by each solver.
-    twins : int
-        By which it is measured how long a test can be predicted, by each solver.
-    outcomes : int
-        Models of each test of which it is known alone whether the body fell.
-    """
-
-    tests: int
-    draws: int
-    members: int
-    twins: int
-    outcomes: int
+    tests: int  # open tests at most that are simulated
+    draws: int  # nominal models of each open test, by each solver
+    members: int  # of every ensemble that predicts a sealed test, by each solver
+    twins: int  # by which it is measured how long a test can be predicted, by each solver
+    outcomes: int  # models of each test of which it is known alone whether the body fell
 
 
 EFFORTS = {
@@ -52,22 +38,12 @@ EFFORTS = {
 
 @dataclass(frozen=True)
 class Plan:
-    """Simulations of a campaign.
-
-    Attributes
-    ----------
-    campaign : Campaign
-    effort : Effort
-    open : list of str
-        Tests that are judged by.
-    simulated : list of str
-        Those of them that are simulated.
-    """
+    """Simulations of a campaign."""
 
     campaign: Campaign
     effort: Effort
-    open: list
-    simulated: list
+    open: list  # of str; tests that are judged by
+    simulated: list  # of str; those of them that are simulated
 
     @cached_property
     def tests(self):

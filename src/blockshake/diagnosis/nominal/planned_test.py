@@ -38,31 +38,14 @@ _SIMULATED = Clock()
 
 @dataclass(frozen=True)
 class PlannedTest:
-    """A commanded test. Of the readings only their times enter.
+    """A commanded test. Of the readings only their times enter."""
 
-    Attributes
-    ----------
-    structure : Structure
-        The campaign's, its blocks where the test found them.
-    motion : GroundMotion
-        Commanded, scaled.
-    duration : float
-        [s]
-    sensors : Sensors
-        Whose noise is read.
-    markers : tuple of str
-        That were read.
-    unread : tuple of (str, str)
-        Marker and axis of the directions that were not measured.
-    clock : Clock
-    """
-
-    structure: Structure
-    motion: GroundMotion
-    duration: float
-    sensors: Sensors
-    markers: tuple[str, ...]
-    unread: tuple[tuple[str, str], ...] = ()
+    structure: Structure  # the campaign's, its blocks where the test found them
+    motion: GroundMotion  # commanded, scaled
+    duration: float  # [s]
+    sensors: Sensors  # whose noise is read
+    markers: tuple[str, ...]  # that were read
+    unread: tuple[tuple[str, str], ...] = ()  # marker and axis of the directions that were not measured
     clock: Clock = _SIMULATED
 
     @property

@@ -18,24 +18,14 @@ DISCREPANCIES = np.array(
 
 
 class Emulator(NamedTuple):
-    """Logarithm of the lean over all shares, normal, of every test.
+    """Logarithm of the lean over all shares, normal, of every test."""
 
-    Attributes
-    ----------
-    slopes : float64 array, shape (n_slopes,)
-        By share and its square.
-    means : float64 array, shape (n_tests, n_nodes)
-        Logarithm of the lean at shares of 0 [ln rad] at each of the nodes of what the test has of its own.
-    log_weights : float64 array, shape (n_tests, n_nodes)
-        Of the nodes, after the simulated leans of the test.
-    spread : float
-        Standard deviation of the logarithm beside.
-    """
-
-    slopes: np.ndarray
+    slopes: np.ndarray  # float64 (n_slopes,); by share and its square
+    # float64 (n_tests, n_nodes); logarithm of the lean at shares of 0 [ln rad] at each of the nodes of what
+    # the test has of its own
     means: np.ndarray
-    log_weights: np.ndarray
-    spread: float
+    log_weights: np.ndarray  # float64 (n_tests, n_nodes); of the nodes, after the simulated leans of the test
+    spread: float  # standard deviation of the logarithm beside
 
     def chance(self, tests, shares):
         """Chance of a fall, float64 (n_discrepancies, n_tests, n_models), by models of ``shares`` (n_models, n)."""

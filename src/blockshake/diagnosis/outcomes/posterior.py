@@ -16,21 +16,11 @@ _MISREAD = 0.005  # chance that an outcome is otherwise than it was noted
 
 
 class SimulatedOutcomes(NamedTuple):
-    """Simulated and measured outcomes of a campaign.
+    """Simulated and measured outcomes of a campaign."""
 
-    Attributes
-    ----------
-    tests : tuple of str
-        All, in the campaign's order.
-    runs : tuple of xarray.Dataset
-        Of `simulate_outcomes`, all tests of one solver each.
-    emulators : tuple of Emulator
-        The same order.
-    """
-
-    tests: tuple
-    runs: tuple
-    emulators: tuple
+    tests: tuple  # of str; all, in the campaign's order
+    runs: tuple  # of xarray.Dataset; of `simulate_outcomes`, all tests of one solver each
+    emulators: tuple  # of Emulator; the same order
 
     def rows(self, names):
         """Numbers of some tests."""

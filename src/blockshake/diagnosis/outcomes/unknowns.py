@@ -10,22 +10,13 @@ _OFFSET = 0.03  # of the body's largest extent, by which its mass centre may lie
 
 @dataclass(frozen=True)
 class Unknown:
-    """One unknown, of which a model has a share ``u`` from -1 to 1; 0 is the structure file's.
+    """One unknown, of which a model has a share ``u`` from -1 to 1; 0 is the structure file's."""
 
-    Attributes
-    ----------
-    name, unit : str
-        Of the parameter that it stands for.
-    cause : str or None
-        Effect whose parameter this is; None of what is never named.
-    usual : float
-        Largest share, up or down, that a sound model has.
-    """
-
+    # name, unit: of the parameter that it stands for
     name: str
     unit: str
-    cause: str | None
-    usual: float
+    cause: str | None  # effect whose parameter this is; None of what is never named
+    usual: float  # largest share, up or down, that a sound model has
 
 
 UNKNOWNS = (

@@ -10,30 +10,21 @@ from blockshake.geometry.rotations import rotation_matrices
 
 @dataclass(frozen=True)
 class Form:
-    """A form, its size, and the same in the simulation.
+    """A form, its size, and the same in the simulation."""
 
-    Attributes
-    ----------
-    name, title : str
-        As in ``verdict.json``, and as in reports.
-    size, unit : str
-        Name and unit of the size.
-    rows : callable, optional
-        Of `JointRows`, the place and ``when``: rows of the form at the size 1, (n_rows,). None where the form says
-        nothing of tests to come.
-    act : callable, optional
-        Of an experiment, the size, the place, what else the form is (``when``), and the name of a test: the experiment
-        with it. None of a form that no model holds.
-    lasts : callable
-        Of ``when``: whether the form acts in tests that are still to come, and so can be tried on a sealed one.
-    """
-
+    # name, title: as in ``verdict.json``, and as in reports
     name: str
     title: str
+    # size, unit: name and unit of the size
     size: str
     unit: str
+    # of `JointRows`, the place and ``when``: rows of the form at the size 1, (n_rows,). None where the form
+    # says nothing of tests to come
     rows: Callable | None = None
+    # of an experiment, the size, the place, what else the form is (``when``), and the name of a test: the
+    # experiment with it. None of a form that no model holds
     act: Callable | None = None
+    # of ``when``: whether the form acts in tests that are still to come, and so can be tried on a sealed one
     lasts: Callable = lambda when: True
 
 

@@ -40,30 +40,15 @@ class SensorFile(Strict):
 
 @dataclass(frozen=True)
 class Asked:
-    """The campaign that is asked for.
+    """The campaign that is asked for."""
 
-    Attributes
-    ----------
-    structure : Structure
-        With every sensor, chosen or only thought of.
-    sensors : Sensors
-        Their noise.
-    chosen : frozenset of str
-        Names of the chosen markers and accelerometers.
-    more : dict of str to frozenset of str
-        In words one sensor more, and the names of its markers or accelerometers.
-    motions : dict of str to GroundMotion
-        By name of the test, scaled.
-    duration : float or None
-        Of every test, the motion's own without one [s].
-    """
-
-    structure: Structure
-    sensors: Sensors
-    chosen: frozenset
+    structure: Structure  # with every sensor, chosen or only thought of
+    sensors: Sensors  # their noise
+    chosen: frozenset  # frozenset of str; names of the chosen markers and accelerometers
+    # str to frozenset of str; in words one sensor more, and the names of its markers or accelerometers
     more: dict
-    motions: dict
-    duration: float | None
+    motions: dict  # str to GroundMotion; by name of the test, scaled
+    duration: float | None  # of every test, the motion's own without one [s]
 
     def simulated(self, test, number, factor=1.0):
         """Readings of all sensors in a test by a nominal model of a number, the motion times a factor."""

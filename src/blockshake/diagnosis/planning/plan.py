@@ -18,20 +18,14 @@ _SEPARATED = 0.5  # chance more, from which an addition is said to separate a pa
 
 
 class Told(NamedTuple):
-    """An effect of the plan.
+    """An effect of the plan."""
 
-    Attributes
-    ----------
-    place : str
-        In words, where the tests tell least of it, of the places at which they tell it.
-    limits : dict of str to float or None
-        By place, the size from which it is seen in nine of ten campaigns; None: not within the prior.
-    apart : dict of str to (float or None)
-        By rival, the size from which it is told from that one there; under None that from which it is seen.
-    """
-
-    place: str
+    place: str  # in words, where the tests tell least of it, of the places at which they tell it
+    # str to float or None; by place, the size from which it is seen in nine of ten campaigns; None: not
+    # within the prior
     limits: dict
+    # str to (float or None); by rival, the size from which it is told from that one there; under None that
+    # from which it is seen
     apart: dict
 
 

@@ -22,41 +22,23 @@ _GAIN, _MISFIT = "gain.nc", "misfit.nc"
 
 @dataclass(frozen=True)
 class Diagnosed:
-    """A campaign's diagnosis.
-
-    Attributes
-    ----------
-    synthetic : bool
-        Any test that was judged by is a virtual one.
-    departures : xarray.Dataset
-        From `departures`.
-    gain : xarray.Dataset or None
-        Of the responses or of a sensor, from the step that measures the gain; None where none was measured.
-    misfit : xarray.Dataset or None
-        From `misfit`; None where nothing was simulated.
-    structure : str
-        Its name.
-    motions : dict of str to dict
-        By name of a commanded motion that is at hand: its provenance.
-    track_record : TrackRecord or None
-        None while the procedure has none.
-    digests, versions : dict of str to str
-        Of the files that the report rests on, and of the software that made it.
-    """
+    """A campaign's diagnosis."""
 
     campaign: Campaign
     effort: str
-    synthetic: bool
+    synthetic: bool  # any test that was judged by is a virtual one
     verdict: Verdict
     decision: Decision
     parity: Parity
-    departures: xr.Dataset
+    departures: xr.Dataset  # xarray.Dataset; from `departures`
+    # of the responses or of a sensor, from the step that measures the gain; None where none was measured
     gain: xr.Dataset | None
-    misfit: xr.Dataset | None
-    structure: str
+    misfit: xr.Dataset | None  # from `misfit`; None where nothing was simulated
+    structure: str  # its name
     bodies: tuple
-    motions: dict
-    track_record: TrackRecord | None
+    motions: dict  # str to dict; by name of a commanded motion that is at hand: its provenance
+    track_record: TrackRecord | None  # None while the procedure has none
+    # digests, versions: str to str; of the files that the report rests on, and of the software that made it
     digests: dict
     versions: dict
 

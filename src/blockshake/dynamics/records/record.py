@@ -15,32 +15,15 @@ _FEW = 0.01  # of all values, which have fewer digits than all others: a print o
 
 @dataclass(frozen=True)
 class Record:
-    """One recorded component.
+    """One recorded component."""
 
-    Attributes
-    ----------
-    acceleration : float64 array, shape (n_rows,)
-        As recorded, no correction made here [m/s2].
-    time_step : float
-        [s]
-    format : str
-        Name of the file format.
-    checked : str
-        Entries of the header that were held against the values.
-    assumed : str
-        What the file does not say; empty where it says all.
-    channel : str
-        Name of the component; empty where the format holds a single one.
-    metadata : dict of str to str
-        What the header says of event, station and processing; ``licence`` where stated.
-    """
-
-    acceleration: np.ndarray
-    time_step: float
-    format: str
-    checked: str
-    assumed: str = ""
-    channel: str = ""
+    acceleration: np.ndarray  # float64 (n_rows,); as recorded, no correction made here [m/s2]
+    time_step: float  # [s]
+    format: str  # name of the file format
+    checked: str  # entries of the header that were held against the values
+    assumed: str = ""  # what the file does not say; empty where it says all
+    channel: str = ""  # name of the component; empty where the format holds a single one
+    # str to str; what the header says of event, station and processing; ``licence`` where stated
     metadata: dict = field(default_factory=dict)
 
 

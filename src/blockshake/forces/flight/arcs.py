@@ -20,36 +20,18 @@ _USUAL = 6.0  # times as far as usual, beside that
 
 @dataclass(frozen=True, eq=False)
 class Arc:
-    """One flight of a test.
-
-    Attributes
-    ----------
-    test : str
-    first, last : int
-        Rows of the test, the last one included.
-    time : float64 array, shape (n,)
-        From the flight's first reading [s].
-    position : float64 array, shape (n, 3)
-        Of the centroid [m]; zero along an axis that was not filmed.
-    rotation : float64 array, shape (n, 3, 3)
-        Body to world.
-    axes : int array
-        Axes that were filmed.
-    residual : float
-        Root mean square distance from a cubic, a coordinate [m].
-    acceleration : float64 array, shape (3,)
-        Mean over the flight [m/s2].
-    """
+    """One flight of a test."""
 
     test: str
+    # first, last: rows of the test, the last one included
     first: int
     last: int
-    time: np.ndarray
-    position: np.ndarray
-    rotation: np.ndarray
-    axes: np.ndarray
-    residual: float
-    acceleration: np.ndarray
+    time: np.ndarray  # float64 (n,); from the flight's first reading [s]
+    position: np.ndarray  # float64 (n, 3); of the centroid [m]; zero along an axis that was not filmed
+    rotation: np.ndarray  # float64 (n, 3, 3); body to world
+    axes: np.ndarray  # int array; axes that were filmed
+    residual: float  # root mean square distance from a cubic, a coordinate [m]
+    acceleration: np.ndarray  # float64 (3,); mean over the flight [m/s2]
 
     @cached_property
     def _beside_lines(self):

@@ -18,27 +18,15 @@ _TURNS = 3.0  # standard deviations, by which such a face turns to that side: a 
 
 @dataclass(frozen=True)
 class EquilibriumRows:
-    """Equations that hold without any force of a joint: ``z . (M a - M g) = z . (wrenches of what is not modelled)``.
+    """Equations that hold without any force of a joint: ``z . (M a - M g) = z . (wrenches of what is not modelled)``."""
 
-    Attributes
-    ----------
-    instant : int array, shape (n_rows,)
-        Index of each row's time among the motion's instants.
-    time : float64 array, shape (n_rows,)
-        [s]
-    direction : float64 array, shape (n_rows, n_bodies, 6)
-        z: a unit vector of virtual displacements of all free bodies, force and moment about the mass centre; zero for
-        driven bodies.
-    value : float64 array, shape (n_rows,)
-        Of the required wrenches along z [N, N m].
-    noise : float64 array, shape (n_rows, 6 * n_free)
-        A root of the covariance by the sensors of the rows of one instant.
-    """
-
-    instant: np.ndarray
-    time: np.ndarray
+    instant: np.ndarray  # int (n_rows,); index of each row's time among the motion's instants
+    time: np.ndarray  # float64 (n_rows,) [s]
+    # float64 (n_rows, n_bodies, 6); z: a unit vector of virtual displacements of all free bodies, force and
+    # moment about the mass centre; zero for driven bodies
     direction: np.ndarray
-    value: np.ndarray
+    value: np.ndarray  # float64 (n_rows,); of the required wrenches along z [N, N m]
+    # float64 (n_rows, 6 * n_free); a root of the covariance by the sensors of the rows of one instant
     noise: np.ndarray
 
     def along(self, wrench):
@@ -48,19 +36,14 @@ class EquilibriumRows:
 
 @dataclass(frozen=True)
 class ContactForces:
-    """Resultants that would balance the required wrenches if every face could carry any wrench.
+    """Resultants that would balance the required wrenches if every face could carry any wrench."""
 
-    Attributes
-    ----------
-    force, moment : float64 arrays, shape (n_times, n_faces, 3)
-        On the upper body, about the middle of the face, along its axes [N, N m]: exact where the faces are a tree, of
-        the least norm elsewhere. NaN where motions are unknown that it follows from.
-    moment_error : float64 array, shape (n_times, n_faces)
-        Standard deviation of the moment about the second tangent [N m].
-    """
-
+    # force, moment: float64 (n_times, n_faces, 3); on the upper body, about the middle of the face, along its
+    # axes [N, N m]: exact where the faces are a tree, of the least norm elsewhere. NaN where motions are
+    # unknown that it follows from
     force: np.ndarray
     moment: np.ndarray
+    # float64 (n_times, n_faces); standard deviation of the moment about the second tangent [N m]
     moment_error: np.ndarray
 
 
@@ -100,23 +83,12 @@ def _of_read_bodies(required, free):
 
 @dataclass(frozen=True)
 class FaceFrames:
-    """Faces as their upper bodies carry them along.
+    """Faces as their upper bodies carry them along."""
 
-    Attributes
-    ----------
-    faces : list of Face
-    middle : float64 array, shape (n_times, n_faces, 3)
-        World frame [m].
-    axes : float64 array, shape (n_times, n_faces, 3, 3)
-        Two tangents and the normal, in columns, world frame.
-    position : float64 array, shape (n_times, n_bodies, 3)
-        Of the mass centres [m].
-    """
-
-    faces: list
-    middle: np.ndarray
-    axes: np.ndarray
-    position: np.ndarray
+    faces: list  # of Face
+    middle: np.ndarray  # float64 (n_times, n_faces, 3); world frame [m]
+    axes: np.ndarray  # float64 (n_times, n_faces, 3, 3); two tangents and the normal, in columns, world frame
+    position: np.ndarray  # float64 (n_times, n_bodies, 3); of the mass centres [m]
 
     def between(self, face, force, point, moment=0.0):
         """Wrenches of a face's force on its upper body, and of its opposite on the lower one, (n_times, n_bodies, 6).

@@ -18,33 +18,18 @@ _BEARS, _EDGE_ERROR = 10, 0.005  # instants by which a bearing edge is known; m
 
 @dataclass(frozen=True)
 class Impact:
-    """One closing of a joint between a driven body and all that it alone carries.
+    """One closing of a joint between a driven body and all that it alone carries."""
 
-    Attributes
-    ----------
-    time : float
-        [s]
-    returned : bool
-        The joint opens again to the edge from which it came.
-    blocks : int
-        Number of bodies above the joint.
-    spin : float
-        Of these bodies as the joint closes: their angular momentum about the edge that bears, over their moment of
-        inertia about it, positive towards the closing [rad/s].
-    kept : float
-        Spin afterwards, about the edge that bears then, over that before; negative where the joint returns [1].
-    error : float
-        Standard deviation of ``kept``, by the sensors and by where the edges bear [1].
-    plastic : float
-        ``kept`` if the bodies turn as one and are struck at the other edge alone (Housner 1963) [1].
-    """
-
-    time: float
-    returned: bool
-    blocks: int
+    time: float  # [s]
+    returned: bool  # the joint opens again to the edge from which it came
+    blocks: int  # number of bodies above the joint
+    # of these bodies as the joint closes: their angular momentum about the edge that bears, over their moment
+    # of inertia about it, positive towards the closing [rad/s]
     spin: float
+    # spin afterwards, about the edge that bears then, over that before; negative where the joint returns [1]
     kept: float
-    error: float
+    error: float  # standard deviation of ``kept``, by the sensors and by where the edges bear [1]
+    # ``kept`` if the bodies turn as one and are struck at the other edge alone (Housner 1963) [1]
     plastic: float
 
 

@@ -15,32 +15,20 @@ _FEWEST = 8  # instants of a motion that is interpolated
 
 @dataclass(frozen=True)
 class PointRows:
-    """A force along x at a point of a body.
+    """A force along x at a point of a body."""
 
-    Attributes
-    ----------
-    unit : float64 array, shape (n_rows,)
-        Rows of 1 N.
-    time : float64 array, shape (n_rows,)
-        Of the rows [s].
-    displacement, velocity : float64 arrays, shape (n_rows,)
-        Of the point along x, against the table, from rest [m, m/s]; zero where the table's motion is not known.
-    fine, fine_velocity : float64 arrays, shape (4 * n_times,)
-        The displacement at instants four times as close, and its rate [m, m/s].
-    at : int array, shape (n_rows,)
-        Instants of the rows.
-    width : float
-        Of the kernel, in instants of ``fine``.
-    """
-
-    unit: np.ndarray
-    time: np.ndarray
+    unit: np.ndarray  # float64 (n_rows,); rows of 1 N
+    time: np.ndarray  # float64 (n_rows,); of the rows [s]
+    # displacement, velocity: float64 (n_rows,); of the point along x, against the table, from rest [m, m/s];
+    # zero where the table's motion is not known
     displacement: np.ndarray
     velocity: np.ndarray
+    # fine, fine_velocity: float64 (4 * n_times,); the displacement at instants four times as close, and its
+    # rate [m, m/s]
     fine: np.ndarray
     fine_velocity: np.ndarray
-    at: np.ndarray
-    width: float
+    at: np.ndarray  # int (n_rows,); instants of the rows
+    width: float  # of the kernel, in instants of ``fine``
 
     def through_kernel(self, fine):
         """A history at the fine instants, smoothed as the readings are, at the rows."""

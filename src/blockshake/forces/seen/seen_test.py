@@ -33,32 +33,18 @@ _MOTION = (
 
 @dataclass(frozen=True)
 class SeenTest:
-    """All that is read off a test, measured or simulated.
-
-    Attributes
-    ----------
-    name : str
-    structure : Structure
-    readings : xarray.Dataset
-        As in a campaign's test file, faults of sensors and outliers taken out, counted from rest.
-    motion : Motion
-    still : bool array, shape (n_times,)
-        The quiet start; nowhere where there is none, and then no motion is known: readings count from rest.
-    joints : JointMotion
-        Zero where it is not known: no face turns or slips there.
-    required : RequiredWrenches
-    frames : FaceFrames
-    states : FaceStates
-    forces : ContactForces
-    rows : EquilibriumRows
-    """
+    """All that is read off a test, measured or simulated."""
 
     name: str
     structure: Structure
+    # xarray.Dataset; as in a campaign's test file, faults of sensors and outliers taken out, counted from
+    # rest
     readings: xr.Dataset
     motion: Motion
+    # bool (n_times,); the quiet start; nowhere where there is none, and then no motion is known: readings
+    # count from rest
     still: np.ndarray
-    joints: JointMotion
+    joints: JointMotion  # zero where it is not known: no face turns or slips there
     required: RequiredWrenches
     frames: FaceFrames
     states: FaceStates

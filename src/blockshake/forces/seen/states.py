@@ -19,20 +19,15 @@ _EITHER = 99  # number of no state
 
 @dataclass(frozen=True)
 class FaceStates:
-    """States of all faces at every instant, their own changes within three widths of the kernel left out.
+    """States of all faces at every instant, their own changes within three widths of the kernel left out."""
 
-    Attributes
-    ----------
-    edge : int8 array, shape (n_times, n_faces, 2)
-        Edge that bears along the first and the second tangent: 1 or -1, 0 for the whole face or where it changes.
-    slip : int8 array, shape (n_times, n_faces)
-        Direction of the upper body's slip along the first tangent, 0 without, or where it changes.
-    lifted, closed : bool arrays, shape (n_times, n_faces)
-        The face bears nowhere; the whole face is seen to bear.
-    """
-
+    # int8 (n_times, n_faces, 2); edge that bears along the first and the second tangent: 1 or -1, 0 for the
+    # whole face or where it changes
     edge: np.ndarray
+    # int8 (n_times, n_faces); direction of the upper body's slip along the first tangent, 0 without, or where
+    # it changes
     slip: np.ndarray
+    # lifted, closed: bool (n_times, n_faces); the face bears nowhere; the whole face is seen to bear
     lifted: np.ndarray
     closed: np.ndarray
 

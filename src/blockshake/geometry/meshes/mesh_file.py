@@ -100,26 +100,13 @@ def _surface_fault(vertices, faces, suffix):
 
 
 class Crossings(NamedTuple):
-    """Crossings of rays with a surface, in the order of the rays and along each of them.
+    """Crossings of rays with a surface, in the order of the rays and along each of them."""
 
-    Attributes
-    ----------
-    ray : int64 array, shape (n_crossings,)
-        Number of the ray.
-    height : float64 array, shape (n_crossings,)
-        Along the ray [m].
-    step : int64 array, shape (n_crossings,)
-        1 where the ray enters, -1 where it leaves.
-    triangle : int64 array, shape (n_crossings,)
-    point : float64 array, shape (n_crossings, 3)
-        [m]
-    """
-
-    ray: np.ndarray
-    height: np.ndarray
-    step: np.ndarray
-    triangle: np.ndarray
-    point: np.ndarray
+    ray: np.ndarray  # int64 (n_crossings,); number of the ray
+    height: np.ndarray  # float64 (n_crossings,); along the ray [m]
+    step: np.ndarray  # int64 (n_crossings,); 1 where the ray enters, -1 where it leaves
+    triangle: np.ndarray  # int64 (n_crossings,)
+    point: np.ndarray  # float64 (n_crossings, 3) [m]
 
 
 def crossings(vertices, faces, axis, count):

@@ -85,26 +85,15 @@ class CampaignFile(Strict):
 
 @dataclass(frozen=True, repr=False)
 class Campaign(Shown):
-    """A checked campaign.
-
-    Attributes
-    ----------
-    folder : Path
-    name, structure : str
-        ``structure`` is a shipped name or the path of a file.
-    sensors : Sensors
-    tests : dict of str to MeasuredTest
-        By name.
-    table : Path or None
-        The CSV table that lists them, where one does.
-    """
+    """A checked campaign."""
 
     folder: Path
+    # name, structure: ``structure`` is a shipped name or the path of a file
     name: str
     structure: str
     sensors: Sensors
-    tests: dict[str, MeasuredTest]
-    table: Path | None = None
+    tests: dict[str, MeasuredTest]  # by name
+    table: Path | None = None  # the CSV table that lists them, where one does
 
     def _words(self):
         return f"{self.name}: {len(self.tests)} tests of {self.structure}"

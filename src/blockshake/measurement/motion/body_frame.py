@@ -18,23 +18,16 @@ _OUTLIER = 6.0  # robust standard deviations
 
 @dataclass(frozen=True)
 class BodyFrame:
-    """Motion of a body and its markers' residuals.
+    """Motion of a body and its markers' residuals."""
 
-    Attributes
-    ----------
-    position : float64 array, shape (n_times, 3)
-        Of the mass centre [m]; NaN where fewer than three markers were read.
-    rotation : float64 array, shape (n_times, 3, 3)
-        Body to world.
-    residual : float64 array, shape (n_times, n_markers, 3)
-        Where the marker is read less where the structure has it, body frame [m]; free of rigid motion; NaN if not read.
-    projector : float64 array, shape (n_times, 3 n_markers, 3 n_markers)
-        Takes an error of the readings (body frame) to the residual; zero where nothing is to be checked.
-    """
-
+    # float64 (n_times, 3); of the mass centre [m]; NaN where fewer than three markers were read
     position: np.ndarray
-    rotation: np.ndarray
+    rotation: np.ndarray  # float64 (n_times, 3, 3); body to world
+    # float64 (n_times, n_markers, 3); where the marker is read less where the structure has it, body frame
+    # [m]; free of rigid motion; NaN if not read
     residual: np.ndarray
+    # float64 (n_times, 3 n_markers, 3 n_markers); takes an error of the readings (body frame) to the
+    # residual; zero where nothing is to be checked
     projector: np.ndarray
 
 

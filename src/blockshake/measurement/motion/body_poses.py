@@ -20,31 +20,21 @@ COLLINEAR = 1e-3
 
 @dataclass(frozen=True)
 class BodyPoses:
-    """Poses of all bodies in time.
+    """Poses of all bodies in time."""
 
-    Attributes
-    ----------
-    position : float64 array, shape (n_times, n_bodies, 3)
-        Of the mass centres, inertial frame [m]; NaN where unknown. Along a direction that is not read, that of the
-        structure file, so that the other directions can be computed with.
-    rotation : float64 array, shape (n_times, n_bodies, 3, 3)
-        Body to world; NaN where unknown.
-    covariance : float64 array, shape (n_bodies, 6, 6)
-        Scatter by the readings' noise of position [m] and small rotation, world frame [rad], mean over the known times;
-        NaN where unknown.
-    known : list of str, length n_bodies
-        ``pose``; ``planar``: two markers, or several on a line or without readings along y, roll and yaw taken as none;
-        ``translation``: one marker, or several whose readings do not tell a turn, rotation unknown, of a driven body
-        taken as none; ``nothing``: no marker.
-    axes_read : bool array, shape (n_bodies, 3)
-        Whether the position along x, y and z is read.
-    """
-
+    # float64 (n_times, n_bodies, 3); of the mass centres, inertial frame [m]; NaN where unknown. Along a
+    # direction that is not read, that of the structure file, so that the other directions can be computed
+    # with
     position: np.ndarray
-    rotation: np.ndarray
+    rotation: np.ndarray  # float64 (n_times, n_bodies, 3, 3); body to world; NaN where unknown
+    # float64 (n_bodies, 6, 6); scatter by the readings' noise of position [m] and small rotation, world frame
+    # [rad], mean over the known times; NaN where unknown
     covariance: np.ndarray
+    # of str, length n_bodies; ``pose``; ``planar``: two markers, or several on a line or without readings
+    # along y, roll and yaw taken as none; ``translation``: one marker, or several whose readings do not tell
+    # a turn, rotation unknown, of a driven body taken as none; ``nothing``: no marker
     known: list
-    axes_read: np.ndarray
+    axes_read: np.ndarray  # bool (n_bodies, 3); whether the position along x, y and z is read
 
 
 def body_poses(test, structure, marker_noise, asked=None):

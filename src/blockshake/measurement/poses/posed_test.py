@@ -14,26 +14,15 @@ _SUNK, _SHARE = 0.15, 0.05  # of the radius; of the readings, which no tracking 
 
 @dataclass(frozen=True)
 class PosedTest:
-    """One test of a body over a level ground.
-
-    Attributes
-    ----------
-    name : str
-    time : float64 array, shape (n_times,)
-        From the first reading [s].
-    position : float64 array, shape (n_times, 3)
-        Of the shape's centroid, world frame [m]; NaN along an axis that was not filmed, and in gaps.
-    rotation : float64 array, shape (n_times, 3, 3)
-        Body to world.
-    planar : bool
-        Filmed in the plane of x and z alone.
-    """
+    """One test of a body over a level ground."""
 
     name: str
-    time: np.ndarray
+    time: np.ndarray  # float64 (n_times,); from the first reading [s]
+    # float64 (n_times, 3); of the shape's centroid, world frame [m]; NaN along an axis that was not filmed,
+    # and in gaps
     position: np.ndarray
-    rotation: np.ndarray
-    planar: bool
+    rotation: np.ndarray  # float64 (n_times, 3, 3); body to world
+    planar: bool  # filmed in the plane of x and z alone
 
     @property
     def axes(self):
@@ -43,25 +32,13 @@ class PosedTest:
 
 @dataclass(frozen=True, eq=False)
 class PosedCampaign:
-    """Tests of one body, and what it is.
-
-    Attributes
-    ----------
-    structure : Structure
-    tests : list of PosedTest
-    body : int
-        Index of the free body.
-    vertices : float64 array, shape (n_vertices, 3)
-        Of the free body from its centroid, body frame [m].
-    ground : float
-        Height of the ground [m].
-    """
+    """Tests of one body, and what it is."""
 
     structure: Structure
-    tests: list
-    body: int
-    vertices: np.ndarray
-    ground: float
+    tests: list  # of PosedTest
+    body: int  # index of the free body
+    vertices: np.ndarray  # float64 (n_vertices, 3); of the free body from its centroid, body frame [m]
+    ground: float  # height of the ground [m]
 
     @property
     def radius(self):

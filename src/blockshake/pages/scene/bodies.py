@@ -12,21 +12,11 @@ _DRIVEN = "#b0b0b0"
 
 
 class BodyMesh(NamedTuple):
-    """A body at the start of its structure.
+    """A body at the start of its structure."""
 
-    Attributes
-    ----------
-    place : float64 array, shape (3,)
-        Of the mass centre, world frame [m].
-    arms : float64 array, shape (n_points, 3)
-        Points of the surface seen from the mass centre, world axes [m].
-    faces : list of lists of int
-        Rows of ``arms``, outward; triangles where the shape is not convex.
-    """
-
-    place: np.ndarray
-    arms: np.ndarray
-    faces: list
+    place: np.ndarray  # float64 (3,); of the mass centre, world frame [m]
+    arms: np.ndarray  # float64 (n_points, 3); points of the surface seen from the mass centre, world axes [m]
+    faces: list  # of lists of int; rows of ``arms``, outward; triangles where the shape is not convex
 
 
 def body_mesh(structure, body):

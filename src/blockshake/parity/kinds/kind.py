@@ -9,29 +9,17 @@ from blockshake.parity.finding import Finding
 
 
 class Kind(NamedTuple):
-    """A kind of fault.
+    """A kind of fault."""
 
-    Attributes
-    ----------
-    quantity : str
-        Name of the kind: what is estimated, or exchanged.
-    effect : str
-        That the kind counts as.
-    equation : str
-        Of the reading.
-    correct : callable of (test, findings, structure), optional
-        Takes findings of this kind out of a test's readings, in place; without it the readings stay.
-    units : tuple of str
-        Of the estimate, for a marker or a displacement transducer, and for an accelerometer channel.
-    size : int, optional
-        Component of a vector that is the size of the registry's effect; None where no component is.
-    """
-
-    quantity: str
-    effect: str
-    equation: str
+    quantity: str  # name of the kind: what is estimated, or exchanged
+    effect: str  # that the kind counts as
+    equation: str  # of the reading
+    # callable of (test, findings, structure); takes findings of this kind out of a test's readings, in place;
+    # without it the readings stay
     correct: Callable | None = None
+    # of str; of the estimate, for a marker or a displacement transducer, and for an accelerometer channel
     units: tuple = ("1", "1")
+    # component of a vector that is the size of the registry's effect; None where no component is
     size: int | None = 0
 
     def finding(self, where, p, tests, estimate=(), covariance=None):
@@ -42,29 +30,14 @@ class Kind(NamedTuple):
 
 
 class Column(NamedTuple):
-    """How a kind of fault enters the readings of a sort of sensors, linear in its size.
-
-    Attributes
-    ----------
-    kind : Kind
-    components : int
-        1, or 3 of a vector.
-    tolerance : float
-        Size that a sound sensor may have; its standard deviation is half of it.
-    signature : callable
-        Makes the readings that a unit of the fault leaves, by component.
-    by_test : bool
-        Whether the fault is another one in each test.
-    visible : float
-        Size that would have to leave as much as the noise, for the fault to be looked for.
-    """
+    """How a kind of fault enters the readings of a sort of sensors, linear in its size."""
 
     kind: Kind
-    components: int
-    tolerance: float
-    signature: Callable
-    by_test: bool = False
-    visible: float = 0.0
+    components: int  # 1, or 3 of a vector
+    tolerance: float  # size that a sound sensor may have; its standard deviation is half of it
+    signature: Callable  # makes the readings that a unit of the fault leaves, by component
+    by_test: bool = False  # whether the fault is another one in each test
+    visible: float = 0.0  # size that would have to leave as much as the noise, for the fault to be looked for
 
 
 def readings_of(test, sensor):

@@ -75,20 +75,11 @@ def brick_matrices(size, poisson_ratio):
 
 @dataclass(frozen=True)
 class BoxMesh:
-    """Regular mesh of a box about its centre.
+    """Regular mesh of a box about its centre."""
 
-    Attributes
-    ----------
-    counts : tuple of 3 int
-        Bricks along x, y, z.
-    size : float64 array, shape (3,)
-        Edge lengths of the box [m].
-    nodes : float64 array, shape (n_nodes, 3)
-        x fastest, then y, then z [m]. Displacement ``3 n + axis`` is that of node n.
-    """
-
-    counts: tuple
-    size: np.ndarray
+    counts: tuple  # of 3 int; bricks along x, y, z
+    size: np.ndarray  # float64 (3,); edge lengths of the box [m]
+    # float64 (n_nodes, 3); x fastest, then y, then z [m]. Displacement ``3 n + axis`` is that of node n
     nodes: np.ndarray
 
     def lines(self, axis):

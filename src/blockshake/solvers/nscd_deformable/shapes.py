@@ -17,26 +17,17 @@ _DEPENDENT = 1e-9
 
 @dataclass(frozen=True)
 class Lattice:
-    """Nodes of a box's faces that carry contact, and how the others follow them.
+    """Nodes of a box's faces that carry contact, and how the others follow them."""
 
-    Attributes
-    ----------
-    lines : tuple of 3 float64 arrays
-        Coordinates of the lattice's planes across x, y, z, the first and the last on the faces [m].
-    nodes : int64 array, shape (n_points,)
-        Nodes of the mesh.
-    table : int64 array, shape (n_x, n_y, n_z)
-        Index in ``nodes`` of each crossing of the planes, -1 inside the box.
-    surface : int64 array, shape (n_surface,)
-        All nodes of the faces.
-    bilinear : sparse float64 array, shape (n_surface, n_points)
-        Their displacements per displacement of the lattice's, bilinear between these.
-    """
-
+    # of 3 float64 arrays; coordinates of the lattice's planes across x, y, z, the first and the last on the
+    # faces [m]
     lines: tuple
-    nodes: np.ndarray
+    nodes: np.ndarray  # int64 (n_points,); nodes of the mesh
+    # int64 (n_x, n_y, n_z); index in ``nodes`` of each crossing of the planes, -1 inside the box
     table: np.ndarray
-    surface: np.ndarray
+    surface: np.ndarray  # int64 (n_surface,); all nodes of the faces
+    # sparse float64 array, shape (n_surface, n_points); their displacements per displacement of the
+    # lattice's, bilinear between these
     bilinear: csr_matrix
 
 
@@ -82,21 +73,15 @@ def _hats(planes, count):
 
 @dataclass(frozen=True)
 class Shapes:
-    """Elastic displacements of a box of unit Young's modulus and density, in its mean axes.
-
-    Attributes
-    ----------
-    mesh : BoxMesh
-    lattice : Lattice
-    squared_frequency : float64 array, shape (n_shapes,)
-        Increasing [1/m2]: times Young's modulus over density it is the square of an angular frequency.
-    displacement : float64 array, shape (3 n_nodes, n_shapes)
-        Orthogonal in mass and stiffness and to all rigid motions, of unit mass [m^-1.5].
-    """
+    """Elastic displacements of a box of unit Young's modulus and density, in its mean axes."""
 
     mesh: BoxMesh
     lattice: Lattice
+    # float64 (n_shapes,); increasing [1/m2]: times Young's modulus over density it is the square of an
+    # angular frequency
     squared_frequency: np.ndarray
+    # float64 (3 n_nodes, n_shapes); orthogonal in mass and stiffness and to all rigid motions, of unit mass
+    # [m^-1.5]
     displacement: np.ndarray
 
     def at_lattice(self):

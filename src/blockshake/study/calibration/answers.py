@@ -19,18 +19,10 @@ _HALF_WIDTH = 0.2  # of a parameter's range, within which samples count for a va
 
 
 class Distances(NamedTuple):
-    """How far the samples' readings of one test are from the measured ones and from each other.
+    """How far the samples' readings of one test are from the measured ones and from each other."""
 
-    Attributes
-    ----------
-    to_test : float64 array, shape (n_samples,)
-        NaN for a sample without an answer [1].
-    between : float64 array, shape (n_samples, n_samples)
-        Symmetric; NaN likewise [1].
-    """
-
-    to_test: np.ndarray
-    between: np.ndarray
+    to_test: np.ndarray  # float64 (n_samples,); NaN for a sample without an answer [1]
+    between: np.ndarray  # float64 (n_samples, n_samples); symmetric; NaN likewise [1]
 
 
 def distances(readings, measured):
@@ -108,23 +100,13 @@ def chance_of_test(found):
 
 @dataclass(frozen=True)
 class Answer:
-    """Answer of some tests on a parameter.
+    """Answer of some tests on a parameter."""
 
-    Attributes
-    ----------
-    score : float64 array, shape (n_shares,)
-        Mean over the tests, as they count, at `SHARES` of the range [1].
-    limit : float
-        By which the score of the true value exceeds the lowest one at most, at `LEVEL` [1].
-    chance : float
-        That scores differ as much where no test depends on the parameter, all questions taken together [1].
-    lower, upper : float
-        Shares of the range between which no value is refused; 0 and 1 where nothing is told [1].
-    """
-
-    score: np.ndarray
-    limit: float
+    score: np.ndarray  # float64 (n_shares,); mean over the tests, as they count, at `SHARES` of the range [1]
+    limit: float  # by which the score of the true value exceeds the lowest one at most, at `LEVEL` [1]
+    # that scores differ as much where no test depends on the parameter, all questions taken together [1]
     chance: float
+    # lower, upper: shares of the range between which no value is refused; 0 and 1 where nothing is told [1]
     lower: float
     upper: float
 

@@ -34,27 +34,17 @@ _DECIMALS = {"m": 7, "1": 5}  # a thousandth of the markers' noise; of a logarit
 
 
 class OpenTest(NamedTuple):
-    """An open test of a case's campaign, as the models are driven and read in it.
-
-    Attributes
-    ----------
-    name : str
-    case : dict
-        ``structure``, ``motion``, ``scale``, ``baseline``, ``duration`` [s] and ``input``, the measured one, as
-        `driving_motions` takes them.
-    base : xarray.Dataset
-        From `measured_input`.
-    measured : xarray.Dataset
-        Readings, time 0 where the input starts; markers that measure x, and accelerometers where there are any.
-    instruments : Instruments
-        Noise of the campaign's sensors.
-    """
+    """An open test of a case's campaign, as the models are driven and read in it."""
 
     name: str
+    # ``structure``, ``motion``, ``scale``, ``baseline``, ``duration`` [s] and ``input``, the measured one, as
+    # `driving_motions` takes them
     case: dict
-    base: xr.Dataset
+    base: xr.Dataset  # xarray.Dataset; from `measured_input`
+    # xarray.Dataset; readings, time 0 where the input starts; markers that measure x, and accelerometers
+    # where there are any
     measured: xr.Dataset
-    instruments: Instruments
+    instruments: Instruments  # noise of the campaign's sensors
 
 
 def open_test(case, campaign, name):

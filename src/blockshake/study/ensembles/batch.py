@@ -19,28 +19,15 @@ HALF_STEP = "half-step"  # batch of the twin: the first sample at half the time 
 
 
 class CaseRuns(NamedTuple):
-    """How a case is simulated by a model.
+    """How a case is simulated by a model."""
 
-    Attributes
-    ----------
-    case : dict
-        Its entries of the configuration: ``structure``, ``duration`` [s] and those of its motion.
-    model : str
-        Of the study: its solver's name, words may follow.
-    settings : dict
-        The model's: ``time_step`` [s], and optionally ``parameters`` of the solver that all samples share, by dotted
-        name.
-    linked : dict of str to str
-        As in `sample_parameters`.
-    output_rate : float or None
-        [Hz]; the usual one where it is None.
-    """
-
-    case: dict
-    model: str
+    case: dict  # its entries of the configuration: ``structure``, ``duration`` [s] and those of its motion
+    model: str  # of the study: its solver's name, words may follow
+    # the model's: ``time_step`` [s], and optionally ``parameters`` of the solver that all samples share, by
+    # dotted name
     settings: dict
-    linked: dict
-    output_rate: float | None = None
+    linked: dict  # str to str; as in `sample_parameters`
+    output_rate: float | None = None  # [Hz]; the usual one where it is None
 
     def parameters(self, row, structure):
         """Parameters of a sample, whose values are ``row``, by dotted name."""

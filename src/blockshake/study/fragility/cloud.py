@@ -38,24 +38,18 @@ _UNITS = {"dispersion": "1", "curve": "1", "demand": "m", "peak_acceleration": "
 
 
 class Cloud(NamedTuple):
-    """Probability of not passing over the intensity, by regression; numbers, or arrays (n,) of drawn parameters.
+    """Probability of not passing over the intensity, by regression; numbers, or arrays (n,) of drawn parameters."""
 
-    Attributes
-    ----------
-    intercept, slope, deviation : float
-        Of the logarithm of the demand, over that of its limit, on the logarithm of the intensity.
-    fall_intercept, fall_slope : float
-        Of the logit of the probability of a fall on the same; minus infinity and 0 where nothing fell.
-    middle : float
-        Mean logarithm of the intensities.
-    """
-
+    # intercept, slope, deviation: of the logarithm of the demand, over that of its limit, on the logarithm of
+    # the intensity
     intercept: float
     slope: float
     deviation: float
+    # fall_intercept, fall_slope: of the logit of the probability of a fall on the same; minus infinity and 0
+    # where nothing fell
     fall_intercept: float
     fall_slope: float
-    middle: float
+    middle: float  # mean logarithm of the intensities
 
     def probability(self, level):
         """Probability of a fall or of a demand above its limit at an intensity, or intensities [1]."""

@@ -17,45 +17,31 @@ _FARTHER = 1.25  # times, from which on medians without limits count as differen
 
 
 class Outcome(NamedTuple):
-    """How the samples of a case by a model ended.
+    """How the samples of a case by a model ended."""
 
-    Attributes
-    ----------
-    collapsed, falling, counted, failed : int
-        Samples that collapsed or still fell, those of them that still fell, of those that count; and failed ones, which
-        do not.
-    block, marker : str
-        The block that moves farthest, of those with markers.
-    peak, least, most, end : float
-        Its largest displacement along x from its place on the slab: median, smallest and largest of the samples, and
-        the median of what is left at the end [m], NaN where the block still moves then (`is_moving`).
-    margin : float
-        Smallest median margin against overturning of any joint [1]; NaN where no joint has one.
-    over : str
-        The joint.
-    leaves : dict of str to float
-        The same of every leaf of `find_leaves` [1].
-    struck, blows : int
-        Samples with blows of `pounding`, and the most in a sample.
-    blow, pair : float, str
-        Velocity of the fastest of all [m/s], and its blocks.
-    """
-
+    # collapsed, falling, counted, failed: samples that collapsed or still fell, those of them that still
+    # fell, of those that count; and failed ones, which do not
     collapsed: int
     falling: int
     counted: int
     failed: int
+    # block, marker: the block that moves farthest, of those with markers
     block: str
     marker: str
+    # peak, least, most, end: its largest displacement along x from its place on the slab: median, smallest
+    # and largest of the samples, and the median of what is left at the end [m], NaN where the block still
+    # moves then (`is_moving`)
     peak: float
     least: float
     most: float
     end: float
-    margin: float
-    over: str
-    leaves: dict
+    margin: float  # smallest median margin against overturning of any joint [1]; NaN where no joint has one
+    over: str  # the joint
+    leaves: dict  # str to float; the same of every leaf of `find_leaves` [1]
+    # struck, blows: samples with blows of `pounding`, and the most in a sample
     struck: int
     blows: int
+    # blow, pair: float, str; velocity of the fastest of all [m/s], and its blocks
     blow: float
     pair: str
 

@@ -37,46 +37,21 @@ class Response:
 
 @dataclass(frozen=True)
 class ReportedCase:
-    """One structure under one motion.
-
-    Attributes
-    ----------
-    name : str
-    settings : dict
-        The case's entry in the configuration.
-    structure : Structure
-    motion : str
-        Name of its motion in `Content.motions`.
-    base : xarray.Dataset or None
-        The slab's measured motion, from `measured_input`; none where the case is compared with no test.
-    measured : xarray.Dataset or None
-        From `measured_curves`; none likewise.
-    test : xarray.Dataset or None
-        The measured test, from `measured_on_clock`.
-    test_file : Path or None
-        Its file.
-    synthetic : bool
-        The measured test is a virtual one.
-    marker_noise : float
-        Standard deviation of the measured markers, or of the optical system's [m].
-    responses : dict of str to Response
-        By model.
-    differences : xarray.Dataset
-        From `compare_models`.
-    """
+    """One structure under one motion."""
 
     name: str
-    settings: dict
+    settings: dict  # the case's entry in the configuration
     structure: Structure
-    motion: str
+    motion: str  # name of its motion in `Content.motions`
+    # the slab's measured motion, from `measured_input`; none where the case is compared with no test
     base: xr.Dataset | None
-    measured: xr.Dataset | None
-    test: xr.Dataset | None
-    test_file: Path | None
-    synthetic: bool
-    marker_noise: float
-    responses: dict
-    differences: xr.Dataset
+    measured: xr.Dataset | None  # from `measured_curves`; none likewise
+    test: xr.Dataset | None  # the measured test, from `measured_on_clock`
+    test_file: Path | None  # its file
+    synthetic: bool  # the measured test is a virtual one
+    marker_noise: float  # standard deviation of the measured markers, or of the optical system's [m]
+    responses: dict  # str to Response; by model
+    differences: xr.Dataset  # xarray.Dataset; from `compare_models`
 
     @property
     def curve_word(self):
@@ -105,48 +80,23 @@ class Calibrated:
 
 @dataclass(frozen=True)
 class Content:
-    """The study's results.
+    """The study's results."""
 
-    Attributes
-    ----------
-    study : dict
-        The configuration.
-    only : str or None
-        Name of the case that is reported alone; none where all are.
-    cases : dict of str to ReportedCase
-    motions : dict of str to xarray.Dataset
-        From `describe_motion`, by name.
-    design : pandas.DataFrame
-        One row a sample.
-    design_summary : dict
-    distributions : dict of str to Lognormal
-    calibrated : tuple of Calibrated
-        Every case in one of them; empty where the study tells of no contact stiffness.
-    calibration : dict or None
-        From `calibrate`, where the study asks for one; a case alone has none.
-    fragility : dict of str to xarray.Dataset
-        From `fragility`, by case; empty where the study asks for none.
-    changes : dict of str to xarray.Dataset
-        From `changes`, by the case with the cause; empty where the study has none.
-    digests : dict of str to str
-        Of input files and of tables that all samples come from, by path.
-    versions : dict of str to str
-        Of the software that made the report.
-    """
-
-    study: dict
-    only: str | None
-    cases: dict
-    motions: dict
-    design: pd.DataFrame
+    study: dict  # the configuration
+    only: str | None  # name of the case that is reported alone; none where all are
+    cases: dict  # str to ReportedCase
+    motions: dict  # str to xarray.Dataset; from `describe_motion`, by name
+    design: pd.DataFrame  # pandas.DataFrame; one row a sample
     design_summary: dict
-    distributions: dict
+    distributions: dict  # str to Lognormal
+    # of Calibrated; every case in one of them; empty where the study tells of no contact stiffness
     calibrated: tuple
-    calibration: dict | None
-    fragility: dict
+    calibration: dict | None  # from `calibrate`, where the study asks for one; a case alone has none
+    fragility: dict  # str to xarray.Dataset; from `fragility`, by case; empty where the study asks for none
+    # str to xarray.Dataset; from `changes`, by the case with the cause; empty where the study has none
     changes: dict
-    digests: dict
-    versions: dict
+    digests: dict  # str to str; of input files and of tables that all samples come from, by path
+    versions: dict  # str to str; of the software that made the report
 
     def peak_acceleration(self, case):
         """Peak ground acceleration of a case's scaled motion, or the median of those that its samples draw [m/s2]."""

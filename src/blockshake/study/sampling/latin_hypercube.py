@@ -21,27 +21,18 @@ DEFAULT_EFFORT = 8
 
 @dataclass(frozen=True, repr=False)
 class SampleDesign:
-    """Values of the random variables for every sample, and how well they correlate.
+    """Values of the random variables for every sample, and how well they correlate."""
 
-    Attributes
-    ----------
-    values : pandas.DataFrame, shape (size, n_variables)
-        One row a sample, columns the dotted names, SI.
-    target, correlation : pandas.DataFrame, shape (n_variables, n_variables)
-        Correlation asked for and reached.
-    kind : str
-        ``pearson``: of the physical values; ``spearman``: of their ranks.
-    stratum : str
-        ``median`` or ``mean``: which value stands for each stratum; ``own``: the samples are those of a table.
-    seed, effort : int
-        As given to `draw_samples`.
-    """
-
+    # pandas.DataFrame, shape (size, n_variables); one row a sample, columns the dotted names, SI
     values: pd.DataFrame
+    # target, correlation: pandas.DataFrame, shape (n_variables, n_variables); correlation asked for and
+    # reached
     target: pd.DataFrame
     correlation: pd.DataFrame
-    kind: str
+    kind: str  # ``pearson``: of the physical values; ``spearman``: of their ranks
+    # ``median`` or ``mean``: which value stands for each stratum; ``own``: the samples are those of a table
     stratum: str
+    # seed, effort: as given to `draw_samples`
     seed: int
     effort: int
 

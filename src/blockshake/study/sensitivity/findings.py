@@ -21,25 +21,14 @@ _WORDS = {
 
 
 class Influence(NamedTuple):
-    """One variable's measure with its 95 % interval [1].
+    """One variable's measure with its 95 % interval [1]."""
 
-    Attributes
-    ----------
-    parameter : str
-        Dotted name.
-    control : bool
-        Model or structure has no use for the variable.
-    value, lower, upper : float
-    beyond_chance : bool
-        The measure is larger than the level of chance of all variables and markers.
-    """
-
-    parameter: str
-    control: bool
+    parameter: str  # dotted name
+    control: bool  # model or structure has no use for the variable
     value: float
     lower: float
     upper: float
-    beyond_chance: bool
+    beyond_chance: bool  # the measure is larger than the level of chance of all variables and markers
 
 
 def differs(result, noise):

@@ -35,20 +35,11 @@ _MOST_ROUNDS = 8
 
 
 class WaveTest(NamedTuple):
-    """One step test and the wave speed read from it.
-
-    Attributes
-    ----------
-    step : StepTest
-    arrival : float64 array, shape (n_blocks,)
-        At the blocks from the lowest up [s].
-    wave_speed : float
-        [m/s]
-    """
+    """One step test and the wave speed read from it."""
 
     step: StepTest
-    arrival: np.ndarray
-    wave_speed: float
+    arrival: np.ndarray  # float64 (n_blocks,); at the blocks from the lowest up [s]
+    wave_speed: float  # [m/s]
 
 
 def target_wave_speeds(structure):

@@ -17,22 +17,13 @@ _STEPS_A_BLOCK = 20
 
 
 class StepTest(NamedTuple):
-    """Histories of a step of velocity sent up a tower.
+    """Histories of a step of velocity sent up a tower."""
 
-    Attributes
-    ----------
-    time : float64 array, shape (n_times,)
-        [s], evenly spaced.
-    displacement, velocity : float64 arrays, shape (n_times, n_blocks)
-        Along the step, blocks from the lowest up [m, m/s].
-    height : float
-        Of the highest block's mass centre over that of the lowest [m].
-    """
-
-    time: np.ndarray
+    time: np.ndarray  # float64 (n_times,); [s], evenly spaced
+    # displacement, velocity: float64 (n_times, n_blocks); along the step, blocks from the lowest up [m, m/s]
     displacement: np.ndarray
     velocity: np.ndarray
-    height: float
+    height: float  # of the highest block's mass centre over that of the lowest [m]
 
 
 def send_step(structure, parameters, direction, passages=3.0, rotations_blocked=True):
