@@ -38,9 +38,9 @@ def test_a_comment_in_a_file_of_the_user_reruns_nothing(tmp_path):
 
 
 def test_every_rule_that_reads_a_file_of_the_user_watches_its_content():
-    """The file's time counts nothing: without `said` an edit would rerun nothing."""
+    """The file's time counts nothing: without `yaml_contents` an edit would rerun nothing."""
     texts = [path.read_text() for path in sorted((ROOT / "workflow" / "rules").glob("*.smk"))]
     rules = [rule for text in texts for rule in re.split(r"\n(?=rule |checkpoint )", text)]
     readers = [rule for rule in rules if "    params:" in rule and re.search(NAMED, rule.split("output:")[0])]
     assert len(readers) == 14
-    assert all("said=said(" in rule for rule in readers)
+    assert all("yaml_contents=yaml_contents(" in rule for rule in readers)

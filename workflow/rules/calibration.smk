@@ -21,12 +21,12 @@ rule compare_open_tests:
             for key in ("name", "structure", "duration")
         },
         campaign=lambda wildcards: CASES[wildcards.case]["measured"]["campaign"],
-        given=lambda wildcards: {
+        study=lambda wildcards: {
             **{key: config[key] for key in ("calibration", "ensemble", "output_rate")},
             "models": {wildcards.model: config["models"][wildcards.model]},
         },
         store="results/store",
-        said=said(structure_file, open_files),
+        yaml_contents=yaml_contents(structure_file, open_files),
         source=lambda wildcards: source_of("compare_open_tests", wildcards.model),
     script:
         "../scripts/compare_open_tests.py"

@@ -12,17 +12,17 @@ wildcard_constraints:
 
 
 def by_content(path):
-    """Path of a file, one in YAML `ancient`: what it says, and not its time, makes a rule with `said` run again."""
+    """Path of a file, one in YAML `ancient`: its contents, and not its time, make a rule with `yaml_contents` run again."""
     return ancient(path) if path.endswith((".yaml", ".yml")) else path
 
 
-def said(*inputs):
-    """Parameter that goes with such inputs of a rule: what the files in YAML say, in which a comment counts nothing.
+def yaml_contents(*inputs):
+    """Parameter that goes with such inputs of a rule: digests of the files in YAML, in which a comment counts nothing.
 
-    Of a function of `input` itself Snakemake does not notice a change.
+    Snakemake does not notice a change of a parameter that is a function of `input` itself.
     """
     return lambda wildcards: [
-        _said(path)
+        _yaml_digest(path)
         for one in inputs
         for path in _paths(one(wildcards) if callable(one) else one)
         if path.endswith((".yaml", ".yml"))
@@ -38,7 +38,7 @@ def _paths(named):
 
 
 @cache
-def _said(path):
+def _yaml_digest(path):
     with refusing():
         return content_digest(load_yaml(path))
 

@@ -74,12 +74,12 @@ def study_config():
 
 def configuration():
     """The configuration as the program reads YAML, which is not how Snakemake does: octal numbers, keys twice."""
-    given, read = workflow.config_settings, {}
-    own = [path for path in workflow.configfiles if path not in given.configfiles]
+    settings, read = workflow.config_settings, {}
+    own = [path for path in workflow.configfiles if path not in settings.configfiles]
     with refusing():
-        for path in (*own, *given.configfiles):
+        for path in (*own, *settings.configfiles):
             update_config(read, load_yaml(path))
-    update_config(read, with_numbers(dict(given.config)))
+    update_config(read, with_numbers(dict(settings.config)))
     return read
 
 
@@ -128,8 +128,8 @@ FAILURES = Failures()
 onstart:
     hold_folder()
     # the user may ask to go on, and a cluster may start killed jobs again
-    asked = workflow.execution_settings
-    FAILURES.watch(logger, asked.keep_going, asked.retries)
+    settings = workflow.execution_settings
+    FAILURES.watch(logger, settings.keep_going, settings.retries)
 
 
 onerror:

@@ -75,9 +75,9 @@ def effort():
 def test_files(campaign, role):
     """What describes a campaign, and the files of its tests that are sealed or that are judged by."""
     with refusing():
-        given = load_campaign(CAMPAIGNS[campaign])
-    names = given.sealed if role == "sealed" else plan(campaign).open
-    return files_of_tests(given, [given.tests[name] for name in names])
+        loaded = load_campaign(CAMPAIGNS[campaign])
+    names = loaded.sealed if role == "sealed" else plan(campaign).open
+    return files_of_tests(loaded, [loaded.tests[name] for name in names])
 
 
 def outcome_files(campaign):
@@ -85,8 +85,8 @@ def outcome_files(campaign):
     from blockshake.diagnosis.outcomes.runs import BATCH, solvers_of
 
     with refusing():
-        given = load_campaign(CAMPAIGNS[campaign])
-    batches = -(-len(given.tests) // BATCH) if given.by_outcomes else 0
+        loaded = load_campaign(CAMPAIGNS[campaign])
+    batches = -(-len(loaded.tests) // BATCH) if loaded.by_outcomes else 0
     return expand(
         f"results/diagnosis/{campaign}/outcomes/{{number}}-{{solver}}.nc",
         number=range(batches),
@@ -101,11 +101,11 @@ def sealed_motions(campaign):
 
 def motion_files(campaign, role=None):
     """Files of the motions that were commanded in tests of a role, or in all."""
-    given = load_campaign(CAMPAIGNS[campaign])
+    loaded = load_campaign(CAMPAIGNS[campaign])
     motions = [
-        test.motion for test in given.tests.values() if role in (None, test.role)
+        test.motion for test in loaded.tests.values() if role in (None, test.role)
     ]
-    paths = [given.folder / motion for motion in motions]
+    paths = [loaded.folder / motion for motion in motions]
     paths += [Path(definition("motions", motion)) for motion in motions]
     return sorted({str(path) for path in paths if path.is_file()})
 

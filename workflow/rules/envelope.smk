@@ -14,7 +14,7 @@ rule make_envelope:
     params:
         structure=lambda wildcards: CASES[wildcards.case]["structure"],
         largest_drift=lookup(dpath="ladder/largest_drift", within=config),
-        said=said(structure_file),
+        yaml_contents=yaml_contents(structure_file),
         source=source_of("make_envelope"),
     script:
         "../scripts/make_envelope.py"
@@ -35,7 +35,7 @@ rule compare_with_measurement:
     params:
         models=MODELS,
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
-        said=said(measured_files),
+        yaml_contents=yaml_contents(measured_files),
         source=source_of("compare_with_measurement"),
     script:
         "../scripts/compare_with_measurement.py"
@@ -56,7 +56,7 @@ rule measure_sensitivity:
     params:
         structure=lambda wildcards: CASES[wildcards.case]["structure"],
         linked=lookup(dpath="ensemble/linked", within=config),
-        said=said(structure_file),
+        yaml_contents=yaml_contents(structure_file),
         source=source_of("measure_sensitivity"),
     script:
         "../scripts/measure_sensitivity.py"
@@ -81,7 +81,7 @@ rule compare_models:
     params:
         models=MODELS,
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
-        said=said(measured_files),
+        yaml_contents=yaml_contents(measured_files),
         source=source_of("compare_models"),
     script:
         "../scripts/compare_models.py"

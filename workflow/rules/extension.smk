@@ -18,7 +18,7 @@ rule measure_changes:
         models=MODELS,
         climber=FRAGILITY.get("model"),
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
-        said=said(measured_files),
+        yaml_contents=yaml_contents(measured_files),
         source=source_of("measure_changes"),
     script:
         "../scripts/measure_changes.py"

@@ -25,7 +25,7 @@ rule climb_samples:
         seed=lookup(dpath="ensemble/seed", within=config),
         ladder=lookup(dpath="ladder", within=config),
         store="results/store",
-        said=said(case_files),
+        yaml_contents=yaml_contents(case_files),
         source=lambda wildcards: source_of("climb_samples", FRAGILITY["model"]),
     script:
         "../scripts/climb_samples.py"
@@ -65,7 +65,7 @@ rule fit_cloud:
         "../envs/blockshake.yaml"
     params:
         case=case_definition,
-        said=said(case_files),
+        yaml_contents=yaml_contents(case_files),
         seed=lookup(dpath="ensemble/seed", within=config),
         largest_drift=lookup(dpath="ladder/largest_drift", within=config),
         source=source_of("fit_cloud"),

@@ -12,7 +12,7 @@ rule measure_input:
     params:
         case=case_definition,
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
-        said=said(case_files, measured_files),
+        yaml_contents=yaml_contents(case_files, measured_files),
         source=source_of("measure_input"),
     script:
         "../scripts/measure_input.py"

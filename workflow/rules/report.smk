@@ -12,7 +12,7 @@ rule make_report:
     params:
         study=CHECKED.model_dump(mode="json"),
         results="results/{study}",
-        said=said(lambda wildcards: files_of_report()),
+        yaml_contents=yaml_contents(lambda wildcards: files_of_report()),
         source=source_of("make_report"),
     script:
         "../scripts/make_report.py"
@@ -33,7 +33,7 @@ rule make_case_report:
         study=CHECKED.model_dump(mode="json"),
         case="{case}",
         results="results/{study}",
-        said=said(lambda wildcards: files_of_report(wildcards.case)),
+        yaml_contents=yaml_contents(lambda wildcards: files_of_report(wildcards.case)),
         source=source_of("make_case_report"),
     script:
         "../scripts/make_case_report.py"

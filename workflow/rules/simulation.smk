@@ -30,7 +30,7 @@ rule simulate_batch:
         runs=sample_runs,
         seed=lookup(dpath="ensemble/seed", within=config),
         store="results/store",
-        said=said(run_files),
+        yaml_contents=yaml_contents(run_files),
         source=lambda wildcards: source_of("simulate_batch", wildcards.model),
     script:
         "../scripts/simulate_batch.py"

@@ -15,7 +15,7 @@ rule calibrate_stiffness:
         structure=lambda wildcards: CASES[wildcards.case]["structure"],
         linked=lookup(dpath="ensemble/linked", within=config),
         store="results/store",
-        said=said(structure_file),
+        yaml_contents=yaml_contents(structure_file),
         source=source_of("calibrate_stiffness"),
     script:
         "../scripts/calibrate_stiffness.py"

@@ -5,7 +5,9 @@ from blockshake.study.sampling.sample_table import load_design, write_design
 from blockshake.study.stiffness.wave_speed import calibrate_design, wave_tests
 
 with logging_to(snakemake.log[0]) as say:
-    of, design = snakemake.params, load_design(snakemake.input.design)
-    stiffness = calibrate_design(of.structure, design, of.linked, Store(of.store, of.source, say))
+    params, design = snakemake.params, load_design(snakemake.input.design)
+    stiffness = calibrate_design(
+        params.structure, design, params.linked, Store(params.store, params.source, say)
+    )
     write_design(snakemake.output.stiffness, stiffness)
-    write_dataset(snakemake.output.waves, wave_tests(of.structure))
+    write_dataset(snakemake.output.waves, wave_tests(params.structure))

@@ -6,7 +6,7 @@ from blockshake.study.ensembles.batch import CaseRuns, batch_rows
 from blockshake.study.fragility.climb import climb_samples
 
 with logging_to(snakemake.log[0]) as say:
-    of, given = snakemake.params, snakemake.input
-    rows, store = batch_rows(snakemake.wildcards.batch, given), Store(of.store, of.source, say)
-    climbed = climb_samples(CaseRuns(**of.runs), rows, Ladder(**of.ladder), store, of.seed)
+    params, input = snakemake.params, snakemake.input
+    rows, store = batch_rows(snakemake.wildcards.batch, input), Store(params.store, params.source, say)
+    climbed = climb_samples(CaseRuns(**params.runs), rows, Ladder(**params.ladder), store, params.seed)
     write_dataset(snakemake.output[0], climbed)

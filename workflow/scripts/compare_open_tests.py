@@ -4,6 +4,8 @@ from blockshake.store import Store
 from blockshake.study.calibration.comparison import compare_open_tests
 
 with logging_to(snakemake.log[0]) as say:
-    of, store = snakemake.params, Store(snakemake.params.store, snakemake.params.source, say)
-    compared = compare_open_tests(of.case, of.campaign, snakemake.wildcards.model, of.given, store)
+    params, store = snakemake.params, Store(snakemake.params.store, snakemake.params.source, say)
+    compared = compare_open_tests(
+        params.case, params.campaign, snakemake.wildcards.model, params.study, store
+    )
     write_dataset(snakemake.output[0], compared)

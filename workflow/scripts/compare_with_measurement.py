@@ -3,6 +3,6 @@ from blockshake.log import logging_to
 from blockshake.study.ensembles.coverage import coverage_of_case
 
 with logging_to(snakemake.log[0]):
-    given, of = snakemake.input, snakemake.params
-    for model, path in zip(of.models, snakemake.output, strict=True):
-        write_dataset(path, coverage_of_case(of.measured, given.base, given[f"batches {model}"]))
+    input, params = snakemake.input, snakemake.params
+    for model, path in zip(params.models, snakemake.output, strict=True):
+        write_dataset(path, coverage_of_case(params.measured, input.base, input[f"batches {model}"]))

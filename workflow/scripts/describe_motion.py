@@ -3,5 +3,5 @@ from blockshake.files import write_dataset
 from blockshake.log import logging_to
 
 with logging_to(snakemake.log[0]):
-    of = snakemake.params
-    write_dataset(snakemake.output[0], describe_motions(of.motion, of.baseline))
+    params = snakemake.params
+    write_dataset(snakemake.output[0], describe_motions(params.motion, params.baseline))

@@ -4,6 +4,6 @@ from blockshake.log import logging_to
 from blockshake.store import Store
 
 with logging_to(snakemake.log[0]) as say:
-    of, store = snakemake.params, Store(snakemake.params.store, snakemake.params.source, say)
-    runs = extend_model(of.folder, of.effort, snakemake.wildcards.solver, snakemake.input, store)
+    params, store = snakemake.params, Store(snakemake.params.store, snakemake.params.source, say)
+    runs = extend_model(params.folder, params.effort, snakemake.wildcards.solver, snakemake.input, store)
     write_dataset(snakemake.output[0], runs)

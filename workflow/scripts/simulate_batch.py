@@ -6,8 +6,8 @@ from blockshake.study.ensembles.case_input import driving_motions
 from blockshake.study.ensembles.ensemble import join_batches
 
 with logging_to(snakemake.log[0]) as say:
-    of, given, runs = snakemake.params, snakemake.input, CaseRuns(**snakemake.params.runs)
-    motions = driving_motions(runs.case, given.base, of.seed)
-    rows, store = batch_rows(snakemake.wildcards.batch, given), Store(of.store, of.source, say)
-    samples = simulate_samples(runs, motions, rows, store, given.base)
+    params, input, runs = snakemake.params, snakemake.input, CaseRuns(**snakemake.params.runs)
+    motions = driving_motions(runs.case, input.base, params.seed)
+    rows, store = batch_rows(snakemake.wildcards.batch, input), Store(params.store, params.source, say)
+    samples = simulate_samples(runs, motions, rows, store, input.base)
     write_dataset(snakemake.output[0], join_batches(samples), DECIMALS)

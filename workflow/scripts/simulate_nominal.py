@@ -4,7 +4,7 @@ from blockshake.log import logging_to
 from blockshake.store import Store
 
 with logging_to(snakemake.log[0]) as say:
-    of, wanted = snakemake.params, snakemake.wildcards
-    store = Store(of.store, of.source, say)
-    runs = simulate_nominal(of.folder, of.effort, int(wanted.number), wanted.solver, store)
+    params, wildcards = snakemake.params, snakemake.wildcards
+    store = Store(params.store, params.source, say)
+    runs = simulate_nominal(params.folder, params.effort, int(wildcards.number), wildcards.solver, store)
     write_dataset(snakemake.output[0], runs)

@@ -4,8 +4,9 @@ from blockshake.log import logging_to
 from blockshake.store import Store
 
 with logging_to(snakemake.log[0]) as say:
-    of, wanted = snakemake.params, snakemake.wildcards
-    store = Store(of.store, of.source, say)
+    params, wildcards = snakemake.params, snakemake.wildcards
+    store = Store(params.store, params.source, say)
     write_dataset(
-        snakemake.output[0], simulate_outcomes(of.folder, of.effort, int(wanted.number), wanted.solver, store)
+        snakemake.output[0],
+        simulate_outcomes(params.folder, params.effort, int(wildcards.number), wildcards.solver, store),
     )
