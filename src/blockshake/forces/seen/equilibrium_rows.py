@@ -18,7 +18,7 @@ _TURNS = 3.0  # standard deviations, by which such a face turns to that side: a 
 
 @dataclass(frozen=True)
 class EquilibriumRows:
-    """Equations that hold without any force of a joint: ``z . (M a - M g) = z . (wrenches of what is not modelled)``."""
+    """Equations without a force of a joint: ``z . (M a - M g) = z . (wrenches of what is not modelled)``."""
 
     instant: np.ndarray  # int (n_rows,); index of each row's time among the motion's instants
     time: np.ndarray  # float64 (n_rows,) [s]
