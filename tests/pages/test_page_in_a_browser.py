@@ -3,23 +3,26 @@
 import base64
 import json
 import re
-import shutil
-import subprocess
 
 import numpy as np
 import pytest
+from browser import CHROMIUM, page_of_browser
 
 from blockshake.pages.blocks import Document, Figure, Section, Table, Text, numbered
 from blockshake.pages.writing import write_html
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
+# the drawing of a canvas sets its width
+DRAWN = """new Promise((done) => {
+  const look = () => (document.querySelector("canvas[width]") ? done() : setTimeout(look, 10));
+  look();
+})"""
+COMPLAINTS = ("Runtime.consoleAPICalled", "Runtime.exceptionThrown", "Log.entryAdded")
 
 
 @pytest.fixture(scope="module")
 def shown(tmp_path_factory):
-    """A page as the browser has made it, and the lines of its console."""
+    """A page as the browser has made it, and the complaints on its console."""
     folder = tmp_path_factory.mktemp("page")
     drawing = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 10"><path d="M0 0 L90 10"/></svg>'
     blocks = (
@@ -39,16 +42,11 @@ def shown(tmp_path_factory):
     blocks += (Figure("Blocks.", drawing, moving=json.dumps(moving)),)
     document = Document("Title", "What it is", (Section("First", "first", blocks),))
     write_html(folder / "page.html", numbered(document))
-    done = subprocess.run(
-        [
-            CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr",
-            f"--user-data-dir={folder / 'profile'}", "--host-resolver-rules=MAP * ~NOTFOUND", "--dump-dom",
-            "--virtual-time-budget=5000",
-            (folder / "page.html").as_uri(),
-        ],
-        capture_output=True, text=True, timeout=120, check=True,
-    )  # fmt: skip
-    return done.stdout, [line for line in done.stderr.splitlines() if "CONSOLE" in line]
+    with page_of_browser(folder / "profile") as page:
+        page.open((folder / "page.html").as_uri())
+        page.evaluate(DRAWN)
+        text = page.evaluate("document.documentElement.outerHTML")
+        return text, [event for event in page.events if event["method"] in COMPLAINTS]
 
 
 def test_nothing_is_complained_of(shown):
