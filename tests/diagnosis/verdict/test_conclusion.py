@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from made_up_decision import made_up_decision
+from made_up_decision import made_up_decision, made_up_part
 
+from blockshake.diagnosis.answer.decide import kind_of
 from blockshake.diagnosis.answer.decision import Measurement
 from blockshake.diagnosis.verdict.conclusion import conclude
 from blockshake.effects.registry import EFFECTS
@@ -80,11 +81,20 @@ def test_a_sensor_fault_beside_a_cause_is_a_combination():
 
 
 def test_a_form_from_outside_alone_is_unknown_and_described():
-    verdict = _verdict(made_up_decision("unknown", ("push",)), [_finding()])
+    verdict = _verdict(made_up_decision("unknown", ("push",)))
     assert (verdict.decision, verdict.causes) == ("unknown", ())
     assert (verdict.outside.form, verdict.outside.starts) == ("push", {"t1": 2.5})
     assert verdict.outside.size["force"].estimate == 4e3
-    assert any("faults of sensors were found" in line for line in verdict.caveats)
+
+
+def test_a_sensor_fault_beside_a_form_from_outside_is_a_combination_with_both():
+    verdict = _verdict(made_up_decision("unknown", ("push",)), [_finding()])
+    assert (verdict.decision, verdict.causes) == ("combination", ("sensor-gain",))
+    assert verdict.location == {"sensor-gain": {"marker": "block-1-face"}}
+    assert verdict.parameters["sensor-gain"]["error"].estimate == 0.03
+    assert verdict.outside.form == "push"
+    assert verdict.word == "probable"
+    assert "a force from outside acts beside it" in verdict.missing
 
 
 def test_a_form_beside_an_effect_keeps_it_from_being_alone():
@@ -112,3 +122,12 @@ def test_measurements_that_split_a_set_stand_in_the_verdict_and_in_its_words():
     verdict = _verdict(decision.model_copy(update={"parts": (told,)}))
     assert [one.test for one in verdict.next_tests] == ["push it"]
     assert verdict.next_test == "push it (splits 90 % of such cases)"
+
+
+def test_a_form_in_readings_of_its_own_beside_an_effect_is_a_combination():
+    """It is a set only where both explain the same readings."""
+    alone, beside = made_up_part("weak-joint"), made_up_part("push")
+    assert kind_of([alone]) == "named"
+    assert kind_of([beside]) == "unknown"
+    assert kind_of([alone, beside]) == "combination"
+    assert kind_of([made_up_part("weak-joint", "push")]) == "ambiguous"

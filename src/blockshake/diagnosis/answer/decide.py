@@ -127,17 +127,15 @@ def chance(part):
 
 
 def kind_of(parts):
-    """Kind of the answer: an outside form alone is unknown; beside an effect it keeps the effect from being alone."""
+    """Kind of the answer; an outside form alone is unknown, in a part of its own beside an effect a combination."""
     if not parts:
         return "none"
     effects = {cause.name for part in parts for cause in part.effects}
     if not effects:
         return "unknown"
-    if any(part.effects and part.forms for part in parts):
+    if any(part.effects and len(part.causes) > 1 for part in parts):
         return "ambiguous"
-    if len(effects) == 1:
-        return "named"
-    return "ambiguous" if any(len(part.causes) > 1 and part.effects for part in parts) else "combination"
+    return "named" if len(effects) == 1 and all(part.effects for part in parts) else "combination"
 
 
 def probabilities(parts, without):

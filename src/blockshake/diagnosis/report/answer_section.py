@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from blockshake.diagnosis.report.statement import changed, not_told, sensor_causes, statement
+from blockshake.diagnosis.report.statement import changed, not_told, statement
 from blockshake.diagnosis.wording import NO_ERROR, chance_words, estimate_words, name_of, percent_words
-from blockshake.effects.registry import title_of
 from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import BLACK, BLUE, LIGHT_GREY, new_figure, svg_of
 from blockshake.pages.units import printed
@@ -75,11 +74,6 @@ def _items(diagnosed):
     verdict, items = diagnosed.verdict, []
     if verdict.missing:
         items.append(f"Not called established because {'; '.join(verdict.missing)}.")
-    if diagnosed.parity.findings and not sensor_causes(diagnosed):
-        faults = "; ".join(
-            f"{title_of(one.effect)}, {', '.join(one.where)}" for one in diagnosed.parity.findings
-        )
-        items.append(f"Faults of sensors were found and taken out of the readings first: {faults}.")
     if verdict.next_test and not verdict.next_tests:
         items.append(f"Measurement that would decide: {verdict.next_test}.")
     return tuple(items)

@@ -9,7 +9,7 @@ from blockshake.diagnosis.answer.size import NINE_TENTHS
 from blockshake.diagnosis.verdict.ladder import rung
 from blockshake.diagnosis.verdict.verdict import MeasuredGain, Misfit, Outside, Verdict
 from blockshake.diagnosis.wording import history_words
-from blockshake.effects.registry import EFFECTS, title_of
+from blockshake.effects.registry import EFFECTS
 from blockshake.parity.kinds.registry import KINDS
 
 _WHERE = ("joint", "body")
@@ -33,24 +33,18 @@ def conclude(decision, findings, kinds, caveats=(), measured=None, judged=None):
 
     Notes
     -----
-    A sensor fault beside a physical cause is a combination: the fault was corrected first. Where the physical cause is
-    unknown, so is the whole, and the faults stand among the caveats. The entry of a fault in ``probabilities`` is 1
-    less the chance of the parity check.
+    A sensor fault beside what acts in the forces, an effect or a form from outside, is a combination: the fault was
+    corrected first. The entry of a fault in ``probabilities`` is 1 less the chance of the parity check.
     """
     sensors, measured = sensor_causes(findings, kinds), measured or MeasuredGain()
     kind, causes = decision.decision, [*sensors, *(one.name for one in decision.causes)]
     caveats = [*caveats, *measured.caveats, *decision.cannot_see, *_caveats(decision)]
     caveats += [decision.impacts] if decision.impacts else []
-    if sensors and kind == "unknown":
-        causes = []
-        titles = ", ".join(title_of(name) for name in sensors)
-        caveats.append(f"faults of sensors were found and taken out: {titles}")
-    elif sensors and kind != "ambiguous":
-        kind = "named" if len(causes) == 1 else "combination"
+    if sensors and kind != "ambiguous":
+        kind = "combination" if decision.parts or len(sensors) > 1 else "named"
     word, missing = rung(kind, decision, bool(sensors), measured)
     named = {one.name: one for one in decision.causes}
-    faults = {name: one for name, one in sensors.items() if name in causes}
-    places = {name: one.location for name, one in faults.items()}
+    places = {name: one.location for name, one in sensors.items()}
     places |= {
         name: {key: one.place[key] for key in _WHERE if key in one.place} for name, one in named.items()
     }
@@ -60,8 +54,8 @@ def conclude(decision, findings, kinds, caveats=(), measured=None, judged=None):
     return Verdict(
         decision=kind,
         causes=causes,
-        probabilities=decision.probabilities | {name: 1.0 - one.p for name, one in faults.items()},
-        parameters={name: one.parameters for name, one in (faults | named).items() if one.parameters},
+        probabilities=decision.probabilities | {name: 1.0 - one.p for name, one in sensors.items()},
+        parameters={name: one.parameters for name, one in (sensors | named).items() if one.parameters},
         location={name: place for name, place in places.items() if place},
         misfit=_misfit(decision, sensors),
         excluded_above={name: size for name, size in decision.excluded_above.items() if name not in causes},
@@ -115,9 +109,9 @@ def _outside(forms):
 
 
 def _misfit(decision, sensors):
-    """The smaller chance of readings like these: with sound sensors, or without a cause; the latter if unknown."""
+    """The smaller chance of readings like these: with sound sensors, or without a cause."""
     first = min(sensors.values(), key=lambda cause: cause.p, default=None)
-    if first is None or decision.decision == "unknown" or first.p >= decision.p:
+    if first is None or first.p >= decision.p:
         return Misfit(p=decision.p, where=decision.where)
     (where,) = first.location.values() or ["the optical system"]
     return Misfit(p=first.p, where=f"readings of {where}, against the other sensors")

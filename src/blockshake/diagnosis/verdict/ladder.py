@@ -40,6 +40,8 @@ def rung(kind, decision, beside_sensor, measured):
         missing.append("two causes act together")
     if decision.causes and beside_sensor:
         missing.append("a sensor's fault acts beside it")
+    if decision.forms:
+        missing.append("a force from outside acts beside it")
     if any(path.beats for path in decision.histories):
         missing.append("sizes that change from test to test explain more")
     moved, tests = len(decision.moved), count_words(len(decision.tests), "test")

@@ -128,7 +128,7 @@ class Verdict(Shown, Strict):
             "none": count == 0,
             "named": count == 1,
             "ambiguous": count > 1 or (count == 1 and self.outside is not None),
-            "combination": count > 1,
+            "combination": count > 1 or (count == 1 and self.outside is not None),
             "unknown": count == 0,
         }
         if not allowed[self.decision]:
