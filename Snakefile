@@ -1,4 +1,4 @@
-# The study: its targets and the order of its rules. The keys of the configuration are in docs/guide/keys.md.
+# The study: its targets and the order of its rules. `blockshake keys study` lists the keys of the configuration.
 from snakemake.utils import min_version
 
 min_version("9.27")

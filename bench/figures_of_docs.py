@@ -19,8 +19,6 @@ from face_impacts import HEADER as FACE_HEADER
 from face_impacts import REPLAY_HEADER, THEORY_HEADER, face_impacts, replayed, theory_rows
 from hollow_faces import HEADER as HOLLOW_HEADER
 from hollow_faces import hollow_rows
-from key_tables import HEADER as KEYS_HEADER
-from key_tables import key_rows
 from measured import wrapped
 from paper_run import HEADER as PAPER_HEADER
 from paper_run import paper_rows
@@ -279,11 +277,6 @@ def faces_of_films():
     return _with_words(REPLAY_HEADER, *found) if found else None
 
 
-def keys_of(kind):
-    """Maker of the table of the keys of a kind of file."""
-    return lambda: markdown(KEYS_HEADER, key_rows(kind))
-
-
 def top_drift(run):
     """Displacement of the top block of configuration 1 relative to the slab along x [m]."""
     along = run["marker_displacement"].sel(axis="x")
@@ -311,10 +304,6 @@ MAKERS = {
     "paper-run": paper_run,
     "lmgc90-speed": lambda: markdown(SPEED_HEADER, speed_rows()),
     "faults": faults,
-    "structure-keys": keys_of("structure"),
-    "study-keys": keys_of("study"),
-    "campaign-keys": keys_of("campaign"),
-    "import-keys": keys_of("import"),
 }
 
 

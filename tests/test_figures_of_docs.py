@@ -27,12 +27,6 @@ def test_a_page_holds_the_figures_of_today(figures):
     assert figures.blocks(page)["slenderness"] == figures.slenderness()
 
 
-@pytest.mark.parametrize("kind", ["structure", "study", "campaign", "import"])
-def test_keys_of_a_file_are_those_of_its_schema_and_each_has_a_meaning(kind, figures):
-    assert figures.blocks(ROOT / "docs" / "guide" / "keys.md")[f"{kind}-keys"] == figures.keys_of(kind)()
-    assert all(row[-1] for row in figures.key_rows(kind))
-
-
 @pytest.mark.parametrize(("page", "name"), [("the-paper", "statements"), ("paper-run", "paper-statements")])
 def test_findings_on_the_paper_are_on_the_statements_of_today(page, name, figures):
     import the_paper

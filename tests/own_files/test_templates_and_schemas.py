@@ -1,5 +1,6 @@
 """Templates are right as they stand, and schemas for editors accept the shipped files."""
 
+import itertools
 import json
 import subprocess
 import sys
@@ -62,6 +63,25 @@ def test_the_template_of_a_study_plans_its_jobs(tmp_path):
     )  # fmt: skip
     assert answer.returncode == 0, answer.stderr
     assert "simulate_batch" in answer.stdout
+
+
+@pytest.mark.parametrize("kind", ["structure", "study", "campaign", "import"])
+def test_every_key_of_a_file_is_printed_with_its_meaning(kind, capsys):
+    assert main(["keys", kind]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    keys = [line.split(": ")[0] for line in lines if not line.startswith(" ")]
+    assert set(file_schema(kind)["properties"]) == {key for key in keys if "." not in key and "[" not in key}
+    assert all(
+        below.startswith("    ") and below.strip()
+        for line, below in itertools.pairwise(lines)
+        if not line.startswith(" ")
+    )
+
+
+def test_a_printed_key_has_kind_unit_and_default(capsys):
+    main(["keys", "structure"])
+    printed = capsys.readouterr().out
+    assert "materials.NAME.viscous_modulus: number at least 0 [Pa s], default 0\n" in printed
 
 
 def _faults(kind, mapping):

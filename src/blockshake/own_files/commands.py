@@ -1,8 +1,9 @@
-"""Commands by which own data come in: import-campaign, convert-motion, new and schema."""
+"""Commands by which own data come in: import-campaign, convert-motion, new, keys and schema."""
 
 import json
 from dataclasses import replace
 from pathlib import Path
+from textwrap import fill
 
 from blockshake.errors import Argument, InputError
 from blockshake.files import check_output, file_digest, history, write_text
@@ -55,6 +56,9 @@ def add_data_commands(add):
     command.add_argument(
         "path", metavar="PATH", help="file to write, or folder of a campaign; never overwritten"
     )
+
+    command = add("keys", _keys, "every key of a file with its kind, unit, default and meaning")
+    command.add_argument("kind", choices=(*KINDS, "import"))
 
     command = add("schema", _schema, "JSON schema of a file, for editors")
     command.add_argument("kind", choices=(*KINDS, "import"))
@@ -197,6 +201,15 @@ def _new(options):
     from blockshake.own_files.templates import write_template
 
     print("\n".join(write_template(options.kind, options.path)))
+
+
+def _keys(options):
+    from blockshake.own_files.keys import key_rows
+
+    for key, value, unit, default, meaning in key_rows(options.kind):
+        given = "needed" if default == "needed" else f"default {default}"
+        print(f"{key}: {value}{f' [{unit}]' if unit else ''}, {given}")
+        print(fill(meaning, 100, initial_indent="    ", subsequent_indent="    "))
 
 
 def _schema(options):

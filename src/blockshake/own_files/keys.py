@@ -1,12 +1,11 @@
-"""Tables of the keys of a user's files, from the JSON schemas that check them."""
+"""Every key of a user's files with its kind, unit, default and meaning, from the schemas that check them."""
 
 import re
 
 from blockshake.own_files.commands import file_schema
 
-HEADER = ("key", "value", "unit", "default", "meaning")
 _UNIT = re.compile(r"\s*\[([^\]]*)\]$")
-_WORDS = {"string": "text", "boolean": "`true` or `false`", "integer": "whole number", "number": "number"}
+_WORDS = {"string": "text", "boolean": "true or false", "integer": "whole number", "number": "number"}
 _LIMITS = {
     "exclusiveMinimum": "above",
     "minimum": "at least",
@@ -41,11 +40,11 @@ def _rows(schema, known, above):
         )
         unit = _UNIT.search(words)
         yield (
-            f"`{key}`",
+            key,
             _value(entry, known),
             unit[1] if unit else "",
             _default(name, entry, schema),
-            _UNIT.sub("", words).replace("|", "\\|"),
+            _UNIT.sub("", words),
         )
         if inner is not None:
             yield from _rows(inner, known, f"{key}{below}.")
@@ -92,9 +91,9 @@ def _value(entry, known):
     if "choices" in entry:
         return " or ".join(_value(one, known) for one in entry["choices"])
     if "enum" in entry:
-        return "one of " + ", ".join(f"`{one}`" for one in entry["enum"])
+        return "one of " + ", ".join(map(str, entry["enum"]))
     if "const" in entry:
-        return f"`{entry['const']}`"
+        return str(entry["const"])
     if "prefixItems" in entry:
         return (
             f"list of {len(entry['prefixItems'])}: {_value(_resolved(entry['prefixItems'][0], known), known)}"
@@ -114,16 +113,16 @@ def _default(name, entry, schema):
     if name in schema.get("required", ()):
         return "needed"
     if "default" not in entry:
-        return "as said"
+        return "see meaning"
     value = entry["default"]
     if value in (None, "", [], {}):
         return "none"
     if isinstance(value, dict):
-        return "as below" if "properties" in entry else "as said"
+        return "that of the keys below" if "properties" in entry else "see meaning"
     if isinstance(value, bool):
-        return f"`{str(value).lower()}`"
+        return str(value).lower()
     if isinstance(value, float):
         return f"{value:g}"
     if isinstance(value, list):
         return ", ".join(f"{one:g}" if isinstance(one, float) else str(one) for one in value)
-    return f"`{value}`" if isinstance(value, str) else str(value)
+    return str(value)
