@@ -22,7 +22,7 @@ quick: setup
 	$(SNAKEMAKE) --configfile config/quick.yaml
 	@echo "The report: $(CURDIR)/reports/quick.html and quick.pdf"
 
-# the estimate takes minutes, so it is kept: made anew when the study changes, and bench/paper_run.py compares with it
+# the estimate takes minutes, so it is kept: made anew when the study changes
 paper: setup $(ESTIMATE)
 	@cat $(ESTIMATE)
 	$(SNAKEMAKE) --configfile config/paper.yaml

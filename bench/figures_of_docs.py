@@ -20,8 +20,6 @@ from face_impacts import REPLAY_HEADER, THEORY_HEADER, face_impacts, replayed, t
 from hollow_faces import HEADER as HOLLOW_HEADER
 from hollow_faces import hollow_rows
 from measured import wrapped
-from paper_run import HEADER as PAPER_HEADER
-from paper_run import paper_rows
 from recorded_lmgc90 import SPEED_HEADER, speed_rows
 from schedule import deep_diagnosis, hours, measured, planned, shares, timed_study
 from shear_damping import HEADER as SHEAR_HEADER
@@ -61,6 +59,7 @@ DIAGNOSED = DOCS.parent / "data" / "virtual-campaign" / "configuration-2"
 PROFILE = DOCS.parent / "profiles" / "slurm" / "profile.yaml"
 DONE = Path("reports/study.html")
 _CORES = (1, 64, 1024)
+_MOST_OF_A_FINDING = 330  # characters on the page
 _SHOWN = 8  # rules that take most of the time
 
 
@@ -124,8 +123,18 @@ def statements(study):
     if prices:
         lines += ["", "### Settings as printed", "", markdown(prices.header, prices.rows)]
     for heading, rows in found.items():
-        lines += ["", f"### {heading}", "", markdown(HEADER, rows)]
+        short = [(*row[:-1], _shortened(row[-1])) for row in rows]
+        lines += ["", f"### {heading}", "", markdown(HEADER, short)]
     return "\n".join(lines)
+
+
+def _shortened(words):
+    """A finding, cut after its last sentence or item within 330 characters."""
+    if len(words) <= _MOST_OF_A_FINDING:
+        return words
+    kept = words[:_MOST_OF_A_FINDING]
+    ends = [found.end() for found in re.finditer(r"(?<=[a-z0-9%\])])\. (?=[A-Z])|; ", kept)]
+    return f"{kept[: ends[-1] if ends else kept.rindex(' ')].rstrip()} ..."
 
 
 def _study_words(content, *more):
@@ -247,12 +256,6 @@ def study_shares():
     return markdown(("rule", "jobs", "CPU min", "share [%]"), rows)
 
 
-def paper_run():
-    """Finished parts of the paper's study; None where there is none."""
-    rows = paper_rows()
-    return markdown(PAPER_HEADER, rows) if rows else None
-
-
 def faults():
     """Ledger of the fault tests; None where they have not been run."""
     if not FAULTS.is_file():
@@ -288,7 +291,6 @@ MAKERS = {
     "slenderness": slenderness,
     "single-changes": single_changes,
     "statements": lambda: statements("study"),
-    "paper-statements": lambda: statements("paper"),
     "printed-settings": printed_settings,
     "shear-damping": shear_damping,
     "joint-calibration": joint_calibration,
@@ -301,7 +303,6 @@ MAKERS = {
     "arrival-definitions": arrival_definitions,
     "cost-of-samples": cost_of_samples,
     "times-on-a-cluster": times_on_a_cluster,
-    "paper-run": paper_run,
     "lmgc90-speed": lambda: markdown(SPEED_HEADER, speed_rows()),
     "faults": faults,
 }
