@@ -8,6 +8,7 @@ be there.
 import itertools
 import os
 import re
+import sys
 import tempfile
 from dataclasses import replace
 from pathlib import Path
@@ -438,3 +439,9 @@ def _errors(test, arc, run):
     away = np.linalg.norm((test.position[arc.first :] - run.position)[:, test.axes], axis=1)
     early = np.searchsorted(test.time[arc.first :], test.time[arc.last] + 0.1)
     return np.nanmean(away), np.nanmean(away[:early])
+
+
+if __name__ == "__main__":
+    for header, found in ((HEADER, face_impacts()), (REPLAY_HEADER, replayed())):
+        for cells in [header, *(found[0] if found else ())]:
+            sys.stdout.write(f"{' | '.join(map(str, cells))}\n")

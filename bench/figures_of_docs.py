@@ -15,8 +15,7 @@ from arrival_definitions import HEADER as ARRIVAL_HEADER
 from arrival_definitions import arrival_rows, arrival_words, stiffness_by_definition, top_peaks
 from convergence import HEADER as CONVERGENCE_HEADER
 from convergence import convergence_rows
-from face_impacts import HEADER as FACE_HEADER
-from face_impacts import REPLAY_HEADER, THEORY_HEADER, face_impacts, replayed, theory_rows
+from face_impacts import THEORY_HEADER, face_impacts, replayed, theory_rows
 from hollow_faces import HEADER as HOLLOW_HEADER
 from hollow_faces import hollow_rows
 from measured import wrapped
@@ -269,15 +268,14 @@ def faults():
     return "\n\n".join([words, *tables])
 
 
-def _with_words(header, cells, words):
-    """A table, and sentences as items under it."""
-    return "\n\n".join([markdown(header, cells), wrapped("\n".join(f"- {one}" for one in words))])
+def _items(sentences):
+    return wrapped("\n".join(f"- {one}" for one in sentences))
 
 
 def faces_of_films():
-    """Faces of the filmed drops that come down; None where the films are not there."""
+    """Sentences on the faces of the filmed drops that come down; None where the films are not there."""
     found = replayed()
-    return _with_words(REPLAY_HEADER, *found) if found else None
+    return _items(found[1]) if found else None
 
 
 def top_drift(run):
@@ -296,7 +294,7 @@ MAKERS = {
     "joint-calibration": joint_calibration,
     "hollow-faces": lambda: markdown(HOLLOW_HEADER, hollow_rows()),
     "face-impact-theory": lambda: markdown(THEORY_HEADER, theory_rows()),
-    "face-impacts": lambda: _with_words(FACE_HEADER, *face_impacts()),
+    "face-impacts": lambda: _items(face_impacts()[1]),
     "face-impacts-of-films": faces_of_films,
     "study-sensitivities": study_sensitivities,
     "study-shares": study_shares,
