@@ -3,6 +3,8 @@
 from pathlib import Path
 from typing import Annotated, Literal
 
+from case_plan import STRENGTHS
+from make_case import LABORATORIES
 from outside_forces import OUTSIDE
 from pydantic import Field, model_validator
 
@@ -25,6 +27,8 @@ class PlannedCase(Strict):
     name: str
     seed: Seed
     structure: str = "two-blocks"
+    laboratory: Literal[*LABORATORIES] = "home"
+    strength: Literal[*STRENGTHS] | None = Field(None, description="None: the tests of `case_plan.PLAN`")
     causes: tuple[Literal[*EFFECTS, *OUTSIDE], ...] = Field(
         (), max_length=2, description="none: a clean case"
     )

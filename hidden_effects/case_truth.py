@@ -6,6 +6,7 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import lfilter
 
 from blockshake.effects.effect import Experiment
+from blockshake.effects.places import joints
 from blockshake.effects.registry import EFFECTS
 from blockshake.measurement.sensors.instruments import Instruments
 from blockshake.study.sampling.distributions import Lognormal
@@ -16,7 +17,9 @@ _WIDER_SHARE = 0.2  # of the cases
 # coefficients of variation of Zhou et al. (2023), Table 2
 _FRICTION, _DENSITY, _MODULUS = 0.10, 0.04, 0.15
 _STIFFNESS = {"ls_dem.normal_stiffness": 2.16e10, "ls_dem.shear_stiffness": 9.0e9}  # N/m3, at Table 2's means
+_BLOCK, _JOINT = 0.025, 0.08  # of the density from block to block, of friction from joint to joint
 _EFFECT, _PARAMETERS, _NUMERICS, _TABLE, _PLACES = range(5)  # streams of the seed
+_SCATTER = 8
 
 
 def true_causes(names, size, structure, tests, seed):
@@ -110,12 +113,31 @@ def true_numerics(seed):
     return "nscd-rigid", float(time_step), {"nscd.shrink": float(generator.uniform(0.025, 0.035))}
 
 
-def true_table(seed):
-    """How the table follows: its gain, how far its gain differs at high frequency, and from which frequency on."""
+def unusual_numerics(structure, seed):
+    """Solver, time step, discretisation and restitution far from what the nominal model draws; half of them LS-DEM."""
+    generator = np.random.default_rng([seed, _NUMERICS])
+    if generator.random() < 0.5:
+        spacing = generator.uniform(0.09, 0.12) if generator.random() < 0.5 else generator.uniform(0.36, 0.5)
+        lost = generator.uniform(0.55, 0.75) if generator.random() < 0.5 else generator.uniform(1.25, 1.45)
+        numerics = {
+            "ls_dem.node_spacing": float(spacing), "ls_dem.perimeter_inset": float(generator.uniform(0.008, 0.012)),
+        }  # fmt: skip
+        time_step = float(generator.choice([3e-5, 8e-5]))
+        return "ls-dem", time_step, numerics, {"restitution": structure.file.restitution * float(lost)}
+    time_step = float(generator.choice([2e-4, 1.5e-3]))
+    numerics = {"nscd.shrink": float(generator.uniform(0.025, 0.035))}
+    return "nscd-rigid", time_step, numerics, {"nscd_restitution": float(generator.uniform(0.03, 0.1))}
+
+
+def true_table(seed, errs=1.0):
+    """How the table follows: its gain, how far its gain differs at high frequency, and from which frequency on.
+
+    Within 3.5 % of the command, times a factor.
+    """
     generator = np.random.default_rng([seed, _TABLE])
     return {
-        "gain": float(1.0 + np.clip(generator.normal(0.0, 0.01), -0.02, 0.02)),
-        "high": float(generator.uniform(-0.015, 0.015)),
+        "gain": float(1.0 + errs * np.clip(generator.normal(0.0, 0.01), -0.02, 0.02)),
+        "high": errs * float(generator.uniform(-0.015, 0.015)),
         "corner": float(generator.uniform(1.5, 4.0)),
     }
 
@@ -136,6 +158,26 @@ def follow(motion, table):
     return (
         Experiment(None, motion, Instruments()).with_motion(0, CubicSpline(breaks, change).c[::-1].T).motion
     )
+
+
+def scattered_blocks(structure, seed):
+    """Factors on friction by joint and on density by body, of a laboratory whose blocks are not alike.
+
+    One density of all blocks with Table 2's scatter, and 2.5 % from block to block; friction with 8 % from joint to
+    joint.
+    """
+    generator = np.random.default_rng([seed, _SCATTER])
+    batch = np.exp(generator.normal(0.0, _DENSITY))
+    density = {
+        body.name: float(batch * np.exp(generator.normal(0.0, _BLOCK)))
+        for body in structure.file.bodies
+        if not body.driven
+    }
+    friction = {
+        "/".join(place["joint"][::-1]): float(np.clip(generator.normal(1.0, _JOINT), 0.8, 1.2))
+        for place in joints(structure)
+    }
+    return friction, density
 
 
 def true_places(structure, seed, test):

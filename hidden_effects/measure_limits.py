@@ -1,7 +1,7 @@
 """Whether the sizes of a plan hold: effects as large as their limit, and half as large, hidden in made campaigns.
 
 ``python hidden_effects/measure_limits.py --plan DIR/plan.json --structure two-blocks --output results/limits`` makes
-campaigns of the tests of `make_case.PLAN` with every effect of the plan, at the place of its limit and with its usual
+campaigns of the tests of `case_plan.PLAN` with every effect of the plan, at the place of its limit and with its usual
 other parameters, diagnoses each and counts in how many the effect is named or in the set. The plan has to be one of the
 same structure and motions.
 """

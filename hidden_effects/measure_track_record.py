@@ -73,7 +73,7 @@ def _make(results, case):
     begin = time.process_time()
     make_case(
         case.seed, case.causes, case.size, campaign_of(results, case.name), truth_of(results, case.name).parent,
-        case.gain is not None, case.structure, case.hollow,
+        case.gain is not None, case.structure, case.hollow, laboratory=case.laboratory, strength=case.strength,
     )  # fmt: skip
     return case.name, time.process_time() - begin
 
@@ -87,7 +87,8 @@ def _is_made(case, results, maker):
     names = tuple(cause["name"] for cause in true["causes"])
     wanted = {
         "made_by": maker, "seed": case.seed, "structure": case.structure, "size": case.size,
-        "sealed": case.gain is not None, "hollow": case.hollow,
+        "sealed": case.gain is not None, "hollow": case.hollow, "laboratory": case.laboratory,
+        "strength": case.strength,
     }  # fmt: skip
     return names == case.causes and {key: true[key] for key in wanted} == wanted
 

@@ -101,7 +101,7 @@ def _bodies(name, structure):
 
 def _push(experiment, cause, start):
     own = cause["values"]
-    part = own["side"] * own["share"] * _mass(experiment, cause) * 9.81 / _STEPS
+    part = own["side"] * own["share"] * acting_mass(experiment.structure, cause) * 9.81 / _STEPS
     return _with_forces(
         experiment, cause,
         [{"amplitude": part, "start": start + _RAMP * step / _STEPS} for step in range(_STEPS)],
@@ -112,7 +112,7 @@ def _blow(experiment, cause, start):
     own = cause["values"]
     step = own["length"] / _STEPS
     heights = np.sin(np.pi * (np.arange(_STEPS) + 0.5) / _STEPS)
-    peak = own["side"] * own["speed"] * _mass(experiment, cause) / (heights.sum() * step)
+    peak = own["side"] * own["speed"] * acting_mass(experiment.structure, cause) / (heights.sum() * step)
     return _with_forces(
         experiment, cause,
         [
@@ -123,12 +123,12 @@ def _blow(experiment, cause, start):
 
 
 def _rope(experiment, cause, start):
-    stiffness = cause["values"]["stiffness"] * _mass(experiment, cause)
+    stiffness = cause["values"]["stiffness"] * acting_mass(experiment.structure, cause)
     return _with_forces(experiment, cause, [{"stiffness": stiffness}])
 
 
 def _drag(experiment, cause, start):
-    damping = cause["values"]["damping"] * _mass(experiment, cause)
+    damping = cause["values"]["damping"] * acting_mass(experiment.structure, cause)
     return _with_forces(experiment, cause, [{"damping": damping}])
 
 
@@ -141,7 +141,7 @@ def _brake(experiment, cause, start):
     mapping = structure.file.model_dump(mode="json")
     mapping["shapes"]["pad"] = {"box": list(_PAD)}
     grip = next(item.coefficient for item in structure.file.friction if item.pair == (body.material,) * 2)
-    pressed = own["share"] * _mass(experiment, cause) * 9.81 / (2.0 * grip)
+    pressed = own["share"] * acting_mass(experiment.structure, cause) * 9.81 / (2.0 * grip)
     for name, side in (("pad-front", -1.0), ("pad-back", 1.0)):
         place = structure.centroid[index] + [0.0, side * 0.5 * (depth + _PAD[1]), own["height"]]
         mapping["bodies"].append(
@@ -212,9 +212,8 @@ def _box(structure, name):
     return file.shapes[next(body for body in file.bodies if body.name == name).shape].box
 
 
-def _mass(experiment, cause):
+def acting_mass(structure, cause):
     """Mass by which a cause is as large as on the two blocks [kg]."""
-    structure = experiment.structure
     own = structure.mass[structure.body_names.index(cause["place"]["body"])]
     return float(max(own, _LEAST * structure.mass[~structure.driven].sum()))
 

@@ -1,3 +1,4 @@
+import case_plan
 import make_case
 import pytest
 
@@ -12,7 +13,7 @@ def clean_campaign(tmp_path_factory):
     """A clean case of the maker, of its tests to fit alone."""
     folder = tmp_path_factory.mktemp("clean")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(make_case, "PLAN", [test for test in make_case.PLAN if test[2] == "fit"])
+        patch.setattr(case_plan, "PLAN", [test for test in case_plan.PLAN if test[2] == "fit"])
         make_case.make_case(SEED, (), None, folder / "campaign", folder / "truth")
     return load_campaign(folder / "campaign")
 

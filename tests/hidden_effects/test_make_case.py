@@ -7,9 +7,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import case_plan
 import make_case
 import numpy as np
 import outside_forces
+import own_laboratory
 import pytest
 import xarray as xr
 from case_files import CALIBRATION_SEEDS, SEEDS, load_plan
@@ -34,14 +36,13 @@ STRUCTURE = structure_file("two-blocks")
 PROGRAMS = Path(make_case.__file__).parent
 SRC = PROGRAMS.parent / "src" / "blockshake"
 LS_DEM_SEED, NSCD_SEED = 28, 1
-MAKER = ("make_case", "effect_forms", "outside_forces", "case_noise", "case_truth")
 
 
 @pytest.fixture
 def short(monkeypatch):
     """Two tests of 2 s instead of the plan."""
-    monkeypatch.setattr(make_case, "PLAN", (("alkion", 1.0, "fit"), ("alkion", 2.5, "sealed")))
-    monkeypatch.setattr(make_case, "DURATION", 2.0)
+    monkeypatch.setattr(case_plan, "PLAN", (("alkion", 1.0, "fit"), ("alkion", 2.5, "sealed")))
+    monkeypatch.setattr(own_laboratory, "DURATION", 2.0)
 
 
 def _make(folder, seed, *names, structure="two-blocks"):
@@ -155,7 +156,7 @@ def test_the_maker_loads_nothing_of_the_diagnosis():
         [sys.executable, "-c", code], cwd=PROGRAMS, capture_output=True, text=True, check=True
     )
     assert loaded.stdout.strip() == ""
-    for name in MAKER:
+    for name in make_case.MAKER:
         assert not any(
             module.startswith(("blockshake.diagnosis", "case_files", "score"))
             for module in _imported(PROGRAMS / f"{name}.py")
@@ -187,8 +188,8 @@ def test_a_third_of_the_cases_is_by_ls_dem_and_no_two_tests_have_one_name():
     # four standard deviations of a share of a third
     assert abs(models.count("ls-dem") / 900 - 1.0 / 3.0) < 4.0 * np.sqrt(2.0 / 9.0 / 900)
     for case in load_plan().cases:
-        tests = make_case.tests_of(case.structure, case.seed, sealed=True)
-        assert len({make_case.name_of_test(motion, scale) for motion, scale, _ in tests}) == 5
+        tests = case_plan.planned_tests(case.structure, case.seed, sealed=True)
+        assert len({case_plan.name_of_test(motion, scale) for motion, scale, _ in tests}) == 5
 
 
 def test_the_discretisation_is_outside_what_the_nominal_model_draws():

@@ -9,7 +9,8 @@ import shutil
 import numpy as np
 import pytest
 import yaml
-from make_case import DURATION, structure_file
+from case_plan import DURATION
+from make_case import structure_file
 from mirror import mirrored_effect, mirrored_structure, mirrored_test
 
 from blockshake.diagnosis.answer.answer import rank

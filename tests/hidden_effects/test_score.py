@@ -2,7 +2,7 @@
 
 import json
 
-import make_case
+import case_plan
 import numpy as np
 import pytest
 import score
@@ -17,8 +17,9 @@ from case_files import (
     truth_of,
     verdict_of,
 )
+from case_plan import name_of_test
 from case_truth import true_causes
-from make_case import name_of_test, structure_file
+from make_case import structure_file
 from outside_forces import OUTSIDE
 from score import make_track_record
 from score_figures import LATE, figures
@@ -39,7 +40,7 @@ BODY, OTHER = "block-1", "block-2"
 
 
 def _truth(case):
-    tests = make_case.tests_of(case.structure, case.seed, case.gain is not None)
+    tests = case_plan.planned_tests(case.structure, case.seed, case.gain is not None)
     structure = STRUCTURES[case.structure]
     far = {body.name: [-1.0, 1.0] for body in structure.file.bodies}
     return {
