@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.geometry.rotations import rotation_rows
-from blockshake.geometry.vectors import dot
+from blockshake.geometry.vectors import difference, dot, rows_product
 from blockshake.jit import borrowing_kernel
 
 # Cosine of the tilt from which a block does not come back.
@@ -31,22 +31,23 @@ def find_collapsed(bodies, state, supported, drop_limit):
 
     Notes
     -----
-    Collapsed means that the body axis that was vertical at the start leans by more than 45
-    degrees, or that the mass centre has dropped by more than ``drop_limit`` with respect to the first driven
-    body. The criterion is this program's; the paper states none. Turning about the vertical is no collapse.
+    Collapsed means, in the frame of the first driven body, that the body axis that was vertical at the start leans by
+    more than 45 degrees, or that the mass centre has dropped by more than ``drop_limit``: a table that tilts carries
+    its blocks along. The criterion is this program's; the paper states none. Turning about the vertical is no collapse.
     """
-    lift = 0.0
-    for body in range(supported.size):
-        if bodies.driven[body]:
-            lift = state.position[body, 2] - bodies.home[body, 2]
-            break
+    base = 0
+    while base < supported.size - 1 and not bodies.driven[base]:
+        base += 1
+    # the axis of the base that was vertical at the start, where it points now
+    _, _, start = rotation_rows(bodies.home_orientation[base])
+    up = rows_product(rotation_rows(state.orientation[base]), start)
     for body in range(supported.size):
         if not supported[body]:
             continue
-        if bodies.home[body, 2] + lift - state.position[body, 2] > drop_limit[body]:
+        height = bodies.home[body, 2] - bodies.home[base, 2]
+        if height - dot(up, difference(state.position[body], state.position[base])) > drop_limit[body]:
             return body
         _, _, start = rotation_rows(bodies.home_orientation[body])
-        _, _, now = rotation_rows(state.orientation[body])
-        if dot(now, start) < COSINE_OF_TILT:
+        if dot(up, rows_product(rotation_rows(state.orientation[body]), start)) < COSINE_OF_TILT:
             return body
     return -1

@@ -78,7 +78,9 @@ def still_falling(structure, position, orientation, angular_velocity):
     if any(structure.solid(body).polyhedron is None for body in np.flatnonzero(watched)):
         return None
     up, base = -gravity / strength, int(np.argmax(structure.driven))
-    fallen = (structure.position - structure.position[base] - position + position[base]) @ up
+    # in the frame of the base, which may have tilted
+    from_base = (position - position[base]) @ _turn_since_start(structure, orientation, base)
+    fallen = (structure.position - structure.position[base] - from_base) @ up
     supports = [
         *_supports(structure, position, orientation, up, watched, drop_limit - fallen),
         *_stops(structure, position, orientation, watched, base),
@@ -104,6 +106,15 @@ def still_falling(structure, position, orientation, angular_velocity):
     return None if body is None else structure.body_names[body]
 
 
+def _turn_since_start(structure, orientation, body):
+    """Rotation matrix of a body from its orientation at the start, (3, 3)."""
+    now, start = (
+        rotation_matrices(orientation[[body]])[0],
+        rotation_matrices(structure.orientation[[body]])[0],
+    )
+    return now @ start.T
+
+
 def _supports(structure, position, orientation, up, watched, most_gap):
     """`_Support` of each pair that touches, or that touched and has at most a gap [m] to come down by."""
     taken = np.flatnonzero(watched | structure.driven)
@@ -121,8 +132,8 @@ def _supports(structure, position, orientation, up, watched, most_gap):
         below, above = pair
         depth, height = corners[below] @ normal, corners[above] @ normal
         carries = normal @ up > COSINE_OF_TILT
-        laid = carries and structure.touching[taken[below], taken[above]]
-        if height.min() - depth.max() > (most_gap[taken[above]] if laid else _TOUCH):
+        joined = structure.touching[taken[below], taken[above]]
+        if height.min() - depth.max() > (most_gap[taken[above]] if joined and carries else _TOUCH):
             continue
         near = height < height.min() + _TOUCH
         supports.append(
@@ -134,8 +145,10 @@ def _supports(structure, position, orientation, up, watched, most_gap):
                 limits=corners[below][
                     (depth > depth.max() - _TOUCH) | _facing(hulls[below], normal @ turns[below])
                 ],
-                # blocks side by side lean on each other, but do not hang on each other
-                friction=np.nan_to_num(structure.friction[taken[below], taken[above]]) if carries else 0.0,
+                # arches and keystones hang on steep joints; blocks that came side by side lean on each other alone
+                friction=np.nan_to_num(structure.friction[taken[below], taken[above]])
+                if carries or joined
+                else 0.0,
                 pivot=corners[above][near].mean(axis=0),
                 carries=carries,
             )
