@@ -16,8 +16,6 @@ from blockshake.tables.numbers import plain_number
 from blockshake.tables.table_file import csv_records
 from blockshake.validation import Positive, Strict
 
-# how the texts of records end that name a vertical component: PEER's "..., UP", K-NET's "U-D", ESM's "HNZ"
-_VERTICAL = re.compile(r"(?:^|[\s,:])(?:UP|DOWN|DWN|DN|U-?D|V|VERT(?:ICAL)?|[A-Z]{2}Z)$", re.IGNORECASE)
 _FILE, _FACTORS = "file", ("scale", "level")
 _NO_MOTIONS = (".json", ".md", ".pdf", ".vt2", ".dt2")  # what lies beside records in a folder
 
@@ -173,9 +171,6 @@ class DrawnMotions:
         key = record.path, self.baseline
         if key not in self.loaded:
             self.loaded[key] = load_motion(record.path, baseline=self.baseline)
-            for name in ("event", "stream", "channels"):
-                if _VERTICAL.search(text := str(self.loaded[key].attributes.get(name, ""))):
-                    raise InputError(record.path, name, f"expected a horizontal component, found '{text}'")
         motion, factor = self.loaded[key], record.scale
         if record.level is not None:
             own = self.intensity.of(motion)

@@ -14,6 +14,7 @@ _KEYS = (
 )  # fmt: skip
 _HERTZ = re.compile(r"\s*Hz$", re.IGNORECASE)
 _SCALE = re.compile(r"([^\s(]+)\s*\(([^)]*)\)\s*/\s*(\S+)")
+_KIK_NET_VERTICAL = ("3", "6")  # directions of KiK-net, in the borehole and at the surface
 _METADATA = {"Origin Time": "event", "Mag.": "magnitude", "Station Code": "station", "Dir.": "stream"}
 
 
@@ -59,4 +60,6 @@ def read_knet(text, where):
     checks = HeaderChecks(where, values, step)
     checks.peak("Max. Acc. (gal)", header.get("Max. Acc. (gal)"), 0.01)
     metadata = {name: header[key] for key, name in _METADATA.items() if header.get(key)}
+    if metadata.get("stream") in _KIK_NET_VERTICAL:
+        metadata["stream"] += ", U-D"
     return [Record(values, step, "K-NET/KiK-net ASCII", checks.made, metadata=metadata)]

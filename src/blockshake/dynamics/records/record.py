@@ -10,6 +10,10 @@ from blockshake.errors import Argument, InputError
 from blockshake.tables.numbers import missing_code, plain_number, touching_numbers
 
 SPECTRUM = re.compile("spectr|pseudo", re.IGNORECASE)  # of a header whose values are no motion
+# how the direction of a vertical component is written: PEER's "UP", K-NET's "U-D", ESM's "HNZ"
+_VERTICAL = re.compile(
+    r"(?:^|[\s,:=])(?:UP|DOWN|DWN|DN|U-?D|UD[12]?|V|Z|VERT(?:ICAL)?\.?|[A-Z]{2}Z)$", re.IGNORECASE
+)
 _FEW = 0.01  # of all values, which have fewer digits than all others: a print of zeros left out has a tenth
 
 
@@ -25,6 +29,15 @@ class Record:
     channel: str = ""  # name of the component; empty where the format holds a single one
     # str to str; what the header says of event, station and processing; ``licence`` where stated
     metadata: dict = field(default_factory=dict)
+
+    def vertical(self):
+        """The text by which the file says that the component is vertical; empty where it does not.
+
+        The direction is a channel's name, a stream, or what follows the last comma of an event.
+        """
+        _, comma, last = self.metadata.get("event", "").rpartition(",")
+        texts = self.channel, self.metadata.get("stream", ""), last if comma else ""
+        return next((text.strip() for text in texts if _VERTICAL.search(text.strip())), "")
 
 
 def positive_number(text, where, key, kind=float):
@@ -173,7 +186,7 @@ def chosen_records(records, channels, where):
         lengths.
     """
     if channels is None and len(records) == 1:
-        return {"x": records[0]}
+        return _horizontal({"x": records[0]}, where)
     listed = "; ".join(
         f"{number}: {record.channel or 'no name'}" for number, record in enumerate(records, start=1)
     )
@@ -199,4 +212,15 @@ def chosen_records(records, channels, where):
     for record in chosen.values():
         if (record.time_step, len(record.acceleration)) != (first.time_step, len(first.acceleration)):
             raise InputError(where, "", f"expected channels of the same time step and length ({listed})")
+    return _horizontal(chosen, where)
+
+
+def _horizontal(chosen, where):
+    """Records by axis; none along x or y is vertical by its header."""
+    for axis in set(chosen) & {"x", "y"}:
+        if found := chosen[axis].vertical():
+            raise InputError(
+                where, axis,
+                f"expected a horizontal component, found '{found}'; `convert-motion --column z=1` makes it z",
+            )  # fmt: skip
     return chosen

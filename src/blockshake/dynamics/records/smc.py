@@ -73,7 +73,8 @@ def read_smc(text, where):
             checks.peak_time(f"real number {time}", known[time - 1], sign)
     stated = _PEAK.search(lines[6])
     checks.peak("line 7", stated.group(1) if stated else None, _UNIT)
-    metadata = {"event": lines[3].strip(), "station": lines[5].partition("component")[0].strip()}
+    station, _, direction = lines[5].partition("component")
+    metadata = {"event": lines[3].strip(), "station": station.strip(), "stream": direction.strip(" =:")}
     return [Record(values, step, "USGS SMC", checks.made, "cm/s2, the unit of the format", metadata=metadata)]
 
 
