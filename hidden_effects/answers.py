@@ -3,9 +3,10 @@
 from dataclasses import dataclass
 from functools import cached_property
 
+from answer_file import Answer
+from oracle_gain import ResponseGains
 from outside_forces import OUTSIDE
 
-from blockshake.diagnosis.verdict.verdict import Verdict
 from blockshake.effects.registry import EFFECTS
 
 SENSORS = {name for name, effect in EFFECTS.items() if effect.acts == "observation"}
@@ -17,24 +18,29 @@ ALIKE = {
     "weak-joint": {"dry-drag"},
     "block-mass": {"loose-weight"},
 }
+LEAST_MOVED = 5.0  # standard deviations of a marker's reading
 _ROPE, _STOP = "outside-rope", "stopper-contact"  # a rope is a stop on the other side
 
 
 @dataclass(frozen=True)
 class Scored:
-    """One case: its truth as the maker wrote it, and the verdict.
-
-    Attributes
-    ----------
-    name : str
-    truth : dict
-        ``causes``, ``size``, ``seed``, ``structure``, ``sealed``, ``tests``.
-    verdict : Verdict
-    """
+    """One case: its truth as the maker wrote it, the verdict, and the gains where they were measured."""
 
     name: str
-    truth: dict
-    verdict: Verdict
+    truth: dict  # ``causes``, ``size``, ``seed``, ``structure``, ``sealed``, ``tests``, and more
+    verdict: Answer
+    gains: ResponseGains | None = None
+
+    @property
+    def laboratory(self):
+        """Key of `make_case.LABORATORIES`."""
+        return self.truth.get("laboratory", "home")
+
+    @property
+    def unseen(self):
+        """Whether a cause from outside moves no marker by five standard deviations beside a twin without it."""
+        moved = self.truth.get("moved")
+        return moved is not None and moved < LEAST_MOVED
 
     @cached_property
     def causes(self):
@@ -86,6 +92,9 @@ class Scored:
         odds = self.verdict.odds
         if self.verdict.decision == "none":
             return 0
+        if not odds:
+            parts = len(self.verdict.causes) + (self.verdict.outside is not None)
+            return max(parts, 1) if self.verdict.decision == "combination" else 1
         leaders = sum(value == 0.0 for value in odds.values()) + sum(
             name not in odds for name in self.verdict.causes
         )

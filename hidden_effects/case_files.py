@@ -1,5 +1,6 @@
 """The plans of the cases, and the places of their campaigns, truths and verdicts."""
 
+from collections import Counter
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -8,16 +9,20 @@ from make_case import LABORATORIES
 from outside_forces import OUTSIDE
 from pydantic import Field, model_validator
 
+from blockshake.diagnosis.verdict.track_record import WHOLE
 from blockshake.effects.registry import EFFECTS
+from blockshake.errors import InputError
 from blockshake.files import file_digest, load_yaml
 from blockshake.validation import NotNegative, Strict, validated
 
 ROOT = Path(__file__).parents[1]
 SEEDS = Path(__file__).parent / "seeds.yaml"
 CALIBRATION_SEEDS = Path(__file__).parent / "calibration-seeds.yaml"
+OPEN_SEEDS = Path(__file__).parent / "open-seeds.yaml"
 SMALL_SEEDS = Path(__file__).parent / "small-seeds.yaml"
 TRACK_RECORD = ROOT / "data" / "track-record" / "hidden-effects.json"
 PAGE = ROOT / "docs" / "results" / "hidden-effects.md"
+README = ROOT / "README.md"
 Seed = Annotated[int, Field(strict=True, ge=0)]
 
 
@@ -33,13 +38,16 @@ class PlannedCase(Strict):
         (), max_length=2, description="none: a clean case"
     )
     size: Literal["small", "large"] | None = Field(None, description="of effects of the registry")
-    gain: Literal["rows", "responses"] | None = Field(None, description="to be measured, on sealed tests")
+    gain: Literal["rows", "responses"] | None = Field(
+        None, description="to be measured, on sealed tests: on the forces alone, or on the responses too"
+    )
     hollow: NotNegative = Field(0.0, description="depth of the true blocks' faces, of LS-DEM [m]")
 
     @property
-    def effort(self):
-        """Effort of its diagnosis: nothing is simulated but for a gain on responses."""
-        return "standard" if self.gain == "responses" else "quick"
+    def stratum(self):
+        """Laboratory and kind: a part of a list keeps the shares of both."""
+        kind = ("clean", "single", "pair")[len(self.causes)]
+        return self.laboratory, kind if self.size or kind == "clean" else f"{kind} outside"
 
     @model_validator(mode="after")
     def _sized(self):
@@ -54,13 +62,23 @@ class Plan(Strict):
     digest: str = Field(description="of the file")
     cases: tuple[PlannedCase, ...]
 
-    @property
-    def efforts(self):
-        """Efforts of the diagnoses in words, by structure."""
-        found = {}
+    part: str = Field(WHOLE, description="of the cases of the file")
+
+    def chosen(self, part=WHOLE, laboratory=None):
+        """The plan with a part of its cases, such as ``1/4``: of every stratum each fourth; or of one laboratory."""
+        try:
+            count, every = map(int, part.split("/"))
+        except ValueError:
+            count = every = 0
+        if not 0 < count <= every:
+            raise InputError("share", part, "expected a share of the cases such as 1/4")
+        met, cases = Counter(), []
         for case in self.cases:
-            found.setdefault(case.structure, set()).add(case.effort)
-        return {structure: " and ".join(sorted(efforts)) for structure, efforts in found.items()}
+            if laboratory in (None, case.laboratory):
+                if met[case.stratum] % every < count:
+                    cases.append(case)
+                met[case.stratum] += 1
+        return self.model_copy(update={"cases": tuple(cases), "part": part})
 
 
 def load_plan(path=SEEDS):

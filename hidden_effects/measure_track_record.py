@@ -1,13 +1,14 @@
 """Track record of the diagnosis: make every case of a plan, diagnose it as a user would, and score it.
 
 ``python hidden_effects/measure_track_record.py --output results/hidden-effects --cores 2`` goes on where it was cut
-short. Every step is a line of ``log.jsonl`` in that folder. ``--make-only`` leaves the verdicts to others.
+short. Every step is a line of ``log.jsonl`` in that folder. ``--share 1/4`` takes a fourth of the cases, ``--laboratory
+mujoco`` those of one laboratory, and ``--make-only`` leaves the verdicts to others.
 """
 
 import argparse
 import json
 import os
-import subprocess
+import shutil
 import sys
 import time
 from concurrent.futures import ProcessPoolExecutor
@@ -17,13 +18,17 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import score
+from answer_file import load_answer
 from case_files import ROOT, SEEDS, campaign_of, load_plan, truth_of, verdict_of
-from make_case import made_by, make_case
+from make_case import LABORATORIES, made_by, make_case
+from oracle_gain import gains_of, response_gains, write_gains
 
 from blockshake.diagnosis import steps
 from blockshake.diagnosis.answer.decision import freeze, write_decision
-from blockshake.diagnosis.verdict.verdict import write_verdict
-from blockshake.files import write_json
+from blockshake.diagnosis.verdict.track_record import WHOLE
+from blockshake.diagnosis.verdict.verdict import load_verdict, write_verdict
+from blockshake.files import load_json, write_json
+from blockshake.parity.parity import load_parity
 
 ENVIRONMENT = {
     **os.environ,
@@ -49,6 +54,11 @@ class Log:
         sys.stdout.flush()
 
 
+def cpu_time():
+    """CPU time of this process and of those that it waited for [s]."""
+    return sum(os.times()[:4])
+
+
 def make_cases(cases, results, cores, log):
     """Make the cases that are missing or that other sources made, in their order.
 
@@ -70,12 +80,12 @@ def make_cases(cases, results, cores, log):
 
 def _make(results, case):
     """Name of a case made, and the CPU time it took [s]."""
-    begin = time.process_time()
+    begin = cpu_time()
     make_case(
         case.seed, case.causes, case.size, campaign_of(results, case.name), truth_of(results, case.name).parent,
         case.gain is not None, case.structure, case.hollow, laboratory=case.laboratory, strength=case.strength,
     )  # fmt: skip
-    return case.name, time.process_time() - begin
+    return case.name, cpu_time() - begin
 
 
 def _is_made(case, results, maker):
@@ -94,35 +104,53 @@ def _is_made(case, results, maker):
 
 
 def diagnose(cases, results, cores, log):
-    """The verdict on every case that has none yet: without a simulation several at a time, with simulations in turn.
+    """The verdict on every case that has none yet.
 
     Parameters
     ----------
     cases : sequence of PlannedCase
     results : Path
     cores : int
+        Cases at a time.
     log : Log
     """
     due = [case for case in cases if not verdict_of(results, case.name).is_file()]
-    quick = [case for case in due if case.effort == "quick"]
     with ProcessPoolExecutor(cores, get_context("spawn")) as pool:
-        for name, seconds in pool.map(partial(_diagnose_quickly, results), quick):
-            log("diagnosed", case=name, effort="quick", seconds=round(seconds, 1))
-    for case in due:
-        if case.effort != "quick":
-            begin = time.monotonic()
-            command = [
-                "blockshake", "diagnose", str(campaign_of(results, case.name)), "--output",
-                str(verdict_of(results, case.name).parent), "--effort", case.effort, "--cores", str(cores),
-            ]  # fmt: skip
-            subprocess.run(command, cwd=ROOT, env=ENVIRONMENT, check=True)
-            log("diagnosed", case=case.name, effort=case.effort, seconds=round(time.monotonic() - begin, 1))
+        for name, seconds in pool.map(partial(_diagnose, results), due):
+            log("diagnosed", case=name, cpu_seconds=round(seconds, 1))
 
 
-def _diagnose_quickly(results, case):
-    """Name of a case diagnosed by the steps of the rules, as at quick effort, and the time it took [s]."""
+def measure_gains(cases, results, cores, log):
+    """Gains on the responses of the cases that ask for them and in which something is named or described."""
+    due = [
+        case
+        for case in cases
+        if case.gain == "responses"
+        and load_answer(verdict_of(results, case.name)).decision != "none"
+        and not gains_of(results, case.name).is_file()
+    ]
+    with ProcessPoolExecutor(cores, get_context("spawn")) as pool:
+        for name, seconds in pool.map(partial(_measure_gains, results), due):
+            log("gains", case=name, cpu_seconds=round(seconds, 1))
+
+
+def _measure_gains(results, case):
+    """Name of a case whose gains were measured, and the CPU time it took [s]."""
+    begin, out = cpu_time(), verdict_of(results, case.name).parent
+    findings = load_parity(out / "parity.json").findings
+    gains = response_gains(
+        campaign_of(results, case.name), load_json(truth_of(results, case.name)),
+        load_verdict(verdict_of(results, case.name)), findings, out / "runs",
+    )  # fmt: skip
+    write_gains(gains_of(results, case.name), gains)
+    shutil.rmtree(out / "runs")
+    return case.name, cpu_time() - begin
+
+
+def _diagnose(results, case):
+    """Name of a case diagnosed by the steps of the rules, as at quick effort, and the CPU time it took [s]."""
     begin, folder, out = (
-        time.monotonic(),
+        cpu_time(),
         campaign_of(results, case.name),
         verdict_of(results, case.name).parent,
     )
@@ -140,7 +168,7 @@ def _diagnose_quickly(results, case):
         files.gain = [str(out / "gain.json")]
         write_json(files.gain[0], gained.summary.model_dump(mode="json"))
     write_verdict(verdict_of(results, case.name), steps.conclude(str(folder), 0, files))
-    return case.name, time.monotonic() - begin
+    return case.name, cpu_time() - begin
 
 
 def main(arguments):
@@ -148,16 +176,21 @@ def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, default=ROOT / "results" / "hidden-effects")
     parser.add_argument("--seeds", type=Path, default=SEEDS, help="the plan")
+    parser.add_argument("--share", default=WHOLE, help="part of the plan, such as 1/4; its strata are kept")
+    parser.add_argument("--laboratory", choices=list(LABORATORIES), help="this one alone")
     parser.add_argument("--make-only", action="store_true", help="neither diagnose nor score")
     parser.add_argument("--cores", type=int, default=os.cpu_count())
     asked = parser.parse_args(arguments)
-    plan, log = load_plan(asked.seeds), Log(asked.output / "log.jsonl")
-    log("started", cores=asked.cores, seeds=plan.digest)
+    plan = load_plan(asked.seeds).chosen(asked.share, asked.laboratory)
+    log = Log(asked.output / "log.jsonl")
+    log("started", cores=asked.cores, seeds=plan.digest, part=plan.part, cases=len(plan.cases))
     make_cases(plan.cases, asked.output, asked.cores, log)
     if asked.make_only:
         return
     diagnose(plan.cases, asked.output, asked.cores, log)
-    score.main(["--results", str(asked.output), "--seeds", str(asked.seeds)])
+    measure_gains(plan.cases, asked.output, asked.cores, log)
+    one = ["--laboratory", asked.laboratory] if asked.laboratory else []
+    score.main(["--results", str(asked.output), "--seeds", str(asked.seeds), "--share", asked.share, *one])
     log("scored")
 
 

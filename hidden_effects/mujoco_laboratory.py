@@ -105,11 +105,10 @@ class Laboratory:
         soft = joint["compliance"] > 0.0
         rigid = f'solref="{CONTACT / damping} {damping}" solimp="{IMPEDANCE}"'
         layer = f'solref="{LAYER} 1" solimp="{LAYER_IMPEDANCE}"'
-        slices = [f"/{part}" for part in range(SLICES)] if soft else [""]
         return [
-            f'<pair name="{number}{part}" geom1="{joint["lower"]}" geom2="{joint["upper"]}{part}" condim="3" '
-            f'friction="{mu} {mu} 0 0 0" {layer if soft else rigid}/>'
-            for part in slices
+            f'<pair name="{name}" geom1="{joint["lower"]}" geom2="{joint["upper"]}{name.removeprefix(str(number))}" '
+            f'condim="3" friction="{mu} {mu} 0 0 0" {layer if soft else rigid}/>'
+            for name in _pair_names(number, joint)
         ]
 
     def _put(self):
@@ -199,20 +198,23 @@ class _Laws:
     def __init__(self, laboratory):
         self.laboratory = laboratory
         self.joints = [
-            (number, joint) for number, joint in enumerate(laboratory.task["joints"]) if joint["law"]
+            (number, joint, [laboratory.model.pair(name) for name in _pair_names(number, joint)])
+            for number, joint in enumerate(laboratory.task["joints"])
+            if joint["law"]
         ]
         self.slipped = np.zeros(len(laboratory.task["joints"]))
         self.speed = np.zeros(6), np.zeros(6)
 
     def __call__(self):
-        for number, joint in self.joints:
+        for number, joint, pairs in self.joints:
             slip = self._slip(joint)
             self.slipped[number] += abs(slip) * TIME_STEP
             mu, law = joint["friction"], joint["law"]
             mu *= 1.0 + law["asymmetry"] * np.tanh(slip / _SIDE)
             mu *= 1.0 - law["rate_drop"] * (1.0 - np.exp(-abs(slip) / law["rate_scale"]))
             mu *= 1.0 - law["slip_drop"] * (1.0 - np.exp(-self.slipped[number] / law["slip_scale"]))
-            self.laboratory.model.pair(str(number)).friction[:2] = mu
+            for pair in pairs:
+                pair.friction[:2] = mu
 
     def _slip(self, joint):
         """Velocity along x of the upper body against the lower one, at the upper one's lower face [m/s]."""
@@ -352,6 +354,12 @@ def _boxes(name, half, sliced):
         at = (2 * part + 1 - SLICES) * thin[0]
         whole += f'<geom name="{name}/{part}" type="box" size="{_words(thin)}" pos="{at} 0 0" mass="0"/>'
     return whole
+
+
+def _pair_names(number, joint):
+    """Names of the contact pairs of a joint: one, or one a slice of a soft layer."""
+    soft = joint["compliance"] > 0.0
+    return [f"{number}/{part}" for part in range(SLICES)] if soft else [str(number)]
 
 
 def _words(values):

@@ -1,8 +1,11 @@
 """Figures of verdicts held against the truth: shares, medians, confusion matrix."""
 
 import numpy as np
+from case_plan import HOME
+from make_case import LABORATORIES
+from oracle_gain import ABLE
 from outside_forces import OUTSIDE
-from scored_record import Answers, JudgedCase, Median, Row
+from scored_record import Answers, GainedCase, JudgedCase, Median, Row
 
 from blockshake.diagnosis.verdict.track_record import Share
 from blockshake.effects.registry import EFFECTS
@@ -11,6 +14,7 @@ from blockshake.statistics.intervals import quantile_ranks, share_interval
 LATE = 0.2  # s
 _TIMED = ("push", "blow")
 _MOST = "at most"
+_WORSE = -0.1
 
 
 def figures(scored):
@@ -23,22 +27,35 @@ def figures(scored):
     Returns
     -------
     dict
-        ``shares``, ``medians``, ``confusion`` and ``cases`` of a `ScoredRecord`.
+        The figures of a `ScoredRecord` by their names in it.
     """
-    clean, known, outside, pairs = (
-        [case for case in scored if case.kind == kind] for kind in ("clean", "effect", "outside", "pair")
-    )
+    known, outside = ([case for case in scored if case.kind == kind] for kind in ("effect", "outside"))
+    laboratories = sorted({case.laboratory for case in scored}, key=list(LABORATORIES).index)
+    own = {one: [case for case in scored if case.laboratory == one] for one in laboratories}
+    abroad = [case for case in scored if case.laboratory != HOME]
     return {
-        "shares": {
-            **_of_all(scored, clean),
-            **_of_effects(known),
-            **_of_outside(outside),
-            **_of_pairs(pairs, known + outside),
-            **_of_gains(scored),
-        },
-        "medians": _medians(clean, known, outside),
+        "shares": shares(scored),
+        "laboratories": {one: shares(cases) for one, cases in own.items()},
+        "abroad": shares(abroad) if abroad else {},
+        "medians": _medians(known, outside, scored),
+        "gains": [_gained(case) for case in scored if case.gains is not None],
         "confusion": _confusion(scored),
         "cases": [_judged(case) for case in scored],
+    }
+
+
+def shares(scored):
+    """Shares of some cases by name; causes from outside that move nothing are counted apart."""
+    clean, known, outside, pairs = (
+        [case for case in scored if case.kind == kind and not case.unseen]
+        for kind in ("clean", "effect", "outside", "pair")
+    )
+    return {
+        **_of_all(scored, clean),
+        **_of_effects(known),
+        **_of_outside(outside),
+        **_of_pairs(pairs, known + outside),
+        **_of_gains(scored),
     }
 
 
@@ -53,6 +70,10 @@ def _of_all(scored, clean):
         "false_beside": _share(
             "a cause that is not there is asserted beside a true one: of all cases with a cause",
             [0 < case.held < case.asserted for case in scored if case.causes], 0.03, _MOST,
+        ),
+        "unseen": _share(
+            "a cause from outside moves no marker by five standard deviations beside a twin without it: counted apart",
+            [case.unseen for case in scored if case.truth.get("moved") is not None],
         ),
     }  # fmt: skip
 
@@ -130,11 +151,24 @@ def _of_gains(scored):
         "gain_given": _share(
             "a gain with its interval is given where one cause is named, or described, and tests are sealed",
             [verdict.row_gain is not None or verdict.gain is not None for verdict in named], 0.95,
-        )
+        ),
+        "gain_idle": _share(
+            "the oracle gains nothing: the cause is there and changes no prediction of the responses",
+            [case.gains.idle for case in scored if case.gains is not None],
+        ),
+        "gain_harmful": _share(
+            "a proposed extension predicts the responses worse, by a gain below -0.1",
+            [
+                case.gains.found is not None and case.gains.found.estimate < _WORSE
+                for case in scored
+                if case.gains is not None and case.gains.proposed
+            ],
+            0.0, _MOST,
+        ),
     }  # fmt: skip
 
 
-def _medians(clean, known, outside):
+def _medians(known, outside, scored):
     right = [case for case in known if case.answer == "right"]
     described = [case for case in outside if case.held]
     found = {}
@@ -149,9 +183,13 @@ def _medians(clean, known, outside):
             f"gain on the responses before the horizon {words}", _responses(cases), goals[1]
         )
     return found | {
-        "gain_clean": _median(
-            "size of the gain on rows or responses where there is no cause",
-            [abs(gain) for gain in _rows(clean) + _responses(clean)], 0.05, _MOST,
+        "gain_over_oracle": _median(
+            f"gain of a proposed extension over the oracle's, where the oracle gains {ABLE:g} or more",
+            [case.gains.share for case in scored if case.gains is not None and case.gains.share is not None], 0.8,
+        ),
+        "gain_oracle": _median(
+            "gain of the oracle, where it gains anything",
+            [case.gains.oracle.estimate for case in scored if case.gains is not None and not case.gains.idle],
         ),
     }  # fmt: skip
 
@@ -182,6 +220,14 @@ def _responses(cases):
     return [case.verdict.gain.recalibrated.estimate for case in cases if case.verdict.gain is not None]
 
 
+def _gained(case):
+    return GainedCase(
+        name=case.name, laboratory=case.laboratory, truth=_truth(case), size=case.truth["size"],
+        answer=case.answer, rows=case.verdict.row_gain.recalibrated if case.verdict.row_gain else None,
+        **case.gains.model_dump(),
+    )  # fmt: skip
+
+
 def _confusion(scored):
     rows = {}
     for case in sorted(scored, key=_order):
@@ -207,6 +253,7 @@ def _truth(case):
 
 def _judged(case):
     return JudgedCase(
-        name=case.name, seed=case.truth["seed"], structure=case.truth["structure"], truth=_truth(case),
+        name=case.name, seed=case.truth["seed"], laboratory=case.laboratory, strength=case.truth.get("strength"),
+        structure=case.truth["structure"], truth=_truth(case), unseen=case.unseen,
         size=case.truth["size"], answer=case.answer, causes=case.verdict.causes,
     )  # fmt: skip

@@ -4,7 +4,8 @@ from typing import Literal
 
 from pydantic import ConfigDict, Field, model_validator
 
-from blockshake.diagnosis.verdict.track_record import TrackRecord, met
+from blockshake.diagnosis.verdict.track_record import WHOLE, TrackRecord, met
+from blockshake.diagnosis.verdict.verdict import Contrast
 from blockshake.files import load_json, write_json
 from blockshake.validation import Count, Finite, Strict, validated
 
@@ -66,11 +67,28 @@ class JudgedCase(Strict):
 
     name: str
     seed: Count
+    laboratory: str = "home"
+    strength: str | None = None
     structure: str
     truth: str
+    unseen: bool = Field(False, description="a cause from outside that moves no marker")
     size: Literal["small", "large"] | None = None
     answer: Literal["none", "right", "wrong", "set_with", "set_without", "unknown", "combination"]
     causes: tuple[str, ...] = ()
+
+
+class GainedCase(Strict):
+    """Gains of one case over the nominal model, by rigid contact dynamics; None where nothing is there to gain."""
+
+    name: str
+    laboratory: str
+    truth: str
+    size: Literal["small", "large"] | None = None
+    answer: str
+    proposed: bool = Field(description="whether the verdict proposes an extension")
+    rows: Contrast | None = Field(None, description="gain on the forces, over the recalibrated model")
+    found: Contrast | None = Field(None, description="gain of the extension on the responses")
+    oracle: Contrast | None = Field(None, description="gain of the true causes on them")
 
 
 class ScoredRecord(TrackRecord):
@@ -79,16 +97,17 @@ class ScoredRecord(TrackRecord):
     model_config = ConfigDict(extra="forbid")
 
     machine: str
-    efforts: dict[str, str] = Field(description="by structure: effort of the diagnosis of its cases")
     seeds: str = Field(description="digest of the list of seeds, fixed before the run")
     medians: dict[str, Median]
     confusion: tuple[Row, ...]
+    gains: tuple[GainedCase, ...] = ()
     cases: tuple[JudgedCase, ...]
 
     @property
     def counted(self):
-        """Numbers of diagnoses and of campaigns in words: some are diagnosed again without their effect on the list."""
-        return f"{len(self.cases)} diagnoses of {len({case.name for case in self.cases})} campaigns"
+        """Number of cases in words, and which part of the list they are."""
+        part = "" if self.part == WHOLE else f", {self.part} of the list, its strata kept"
+        return f"{len(self.cases)} campaigns{part}"
 
     @model_validator(mode="after")
     def _consistent(self):

@@ -1,5 +1,8 @@
-"""Tables of the track record as text, for the terminal and for docs/results/hidden-effects.md; no figure is typed."""
+"""The track record as tables and as sentences, for the terminal, its page and the README; no figure is typed."""
 
+import textwrap
+
+from make_case import LABORATORIES
 from outside_forces import OUTSIDE
 from scored_record import Answers
 
@@ -22,17 +25,12 @@ def as_markdown(record):
     lines = [
         f"{record.date}, sources {record.commit}, {record.machine}, seeds {record.seeds}: {record.counted}.",
         "",
+        *_by_laboratory(record),
+        "",
         *_by_structure(record),
         "",
-        "| figure | share | of | 95 % interval | goal | |",
-        "|---|---|---|---|---|---|",
+        *_intervals(record),
     ]
-    for share in record.shares.values():
-        estimate = f"{share.hits / share.n:.3f}" if share.n else "none"
-        lines.append(
-            f"| {share.meaning} | {estimate} | {share.n} | {share.lower:.3f} to {share.upper:.3f} | "
-            f"{_goal(share)} | {_WORDS[share.met]} |"
-        )
     lines += ["", "| figure | median | of | 95 % interval | goal | |", "|---|---|---|---|---|---|"]
     for median in record.medians.values():
         estimate = "none" if median.estimate is None else f"{median.estimate:.2f}"
@@ -46,25 +44,116 @@ def as_markdown(record):
         words = [row.truth, *([row.size] if row.size else [])]
         counts = [str(count) if count else "" for count in row.answers.model_dump().values()]
         lines.append(f"| {', '.join(words)} | {' | '.join(counts)} |")
+    if record.gains:
+        lines += ["", *_gains(record)]
     return "\n".join(lines)
+
+
+def in_words(record):
+    """The record in sentences of a page, in lines of 100 columns."""
+    places = ", ".join(LABORATORIES[one] for one in record.laboratories)
+    structures = len({case.structure for case in record.cases})
+    sentences = [
+        f"We made {len(record.cases)} synthetic campaigns of {structures} structures in {len(record.laboratories)} "
+        f"laboratories ({places}), of other seeds than those that thresholds were set on."
+    ]
+    sentences += [
+        f"{words} ({hits(share)} at home, {hits(record.abroad[name])} abroad; goal {_goal(share)})."
+        for name, words in _SAID.items()
+        if (share := record.shares[name]).n and name in record.abroad
+    ]
+    for name in ("gain_over_oracle",):
+        median = record.medians[name]
+        if median.estimate is not None:
+            sentences.append(
+                f"A proposed extension gains {median.estimate:.2f} of what the true cause would gain, in the median of "
+                f"{median.n} cases (goal {_goal(median)})."
+            )
+    sentences.append(
+        "The [track record](docs/results/hidden-effects.md) holds all figures with their misses, and every report "
+        "prints those of the worst laboratory."
+    )
+    return "\n".join(textwrap.wrap(" ".join(sentences), 100, break_long_words=False, break_on_hyphens=False))
+
+
+_SAID = {
+    "false_alarms": "An effect was called where nothing was hidden",
+    "truth_in_set_seen": "A hidden effect that the tests can show was named, or listed among the possible causes",
+    "outside_unknown": "A cause outside of the list was called unknown, or a rope one class with a stop",
+    "outside_named": "Such a cause got a listed name alone",
+    "false_beside": "A cause that is not there was asserted beside a true one",
+    "pairs_both": "Both of two causes were held",
+}
+
+
+def hits(share):
+    """A share as its count, such as ``3 of 40``."""
+    return f"{share.hits} of {share.n}"
+
+
+def _by_laboratory(record):
+    """Lines of a table: every figure home and abroad, and by laboratory."""
+    columns = {**record.laboratories, "abroad": record.abroad} if record.abroad else record.laboratories
+    yield f"| figure | {' | '.join(columns)} | goal | worst |"
+    yield "|---|" + "---|" * (len(columns) + 2)
+    for name, share in record.shares.items():
+        cells = [_cell(own[name]) for own in columns.values()]
+        laboratory, worst = record.worst.get(name, ("", None))
+        met = f"{laboratory}, {_WORDS[worst.met]}" if worst else ""
+        yield f"| {share.meaning} | {' | '.join(cells)} | {_goal(share)} | {met} |"
+
+
+def _cell(share):
+    return f"{share.estimate:.3f} ({hits(share)})" if share.n else "none"
+
+
+def _intervals(record):
+    """Lines of a table: intervals of the figures with a goal, home and abroad."""
+    home = next(iter(record.laboratories.values()))
+    yield "| figure | first laboratory, 95 % interval | abroad, 95 % interval | all, 95 % interval |"
+    yield "|---|---|---|---|"
+    for name, share in record.shares.items():
+        if share.goal is not None:
+            cells = [
+                f"{one.lower:.3f} to {one.upper:.3f}" if one is not None and one.n else "none"
+                for one in (home[name], record.abroad.get(name), share)
+            ]
+            yield f"| {share.meaning} | {' | '.join(cells)} |"
+
+
+def _gains(record):
+    """Lines of a table: gains of single cases over the nominal model."""
+    yield "| truth | laboratory | answer | gain on the forces | found | oracle |"
+    yield "|---|---|---|---|---|---|"
+    for case in sorted(record.gains, key=lambda case: (case.truth, case.laboratory, case.name)):
+        found = _gain(case.found) if case.proposed else "not proposed"
+        words = ", ".join([case.truth, *([case.size] if case.size else [])])
+        rows = "" if case.rows is None else _gain(case.rows)
+        yield f"| {words} | {case.laboratory} | {case.answer} | {rows} | {found} | {_gain(case.oracle)} |"
+
+
+def _gain(contrast):
+    if contrast is None:
+        return "nothing to gain"
+    return f"{contrast.estimate:.2f} ({contrast.lower:.2f} to {contrast.upper:.2f})"
 
 
 def _by_structure(record):
     """Lines of a table: right answers by structure."""
-    yield "| structure | effort | none where nothing is hidden | truth named or in the set | outside called unknown |"
-    yield "|---|---|---|---|---|"
-    for structure, effort in record.efforts.items():
+    yield "| structure | none where nothing is hidden | truth named or in the set | outside called unknown |"
+    yield "|---|---|---|---|"
+    for structure in dict.fromkeys(case.structure for case in record.cases):
         own = [case for case in record.cases if case.structure == structure]
         counts = (
             _count(own, ("none",), lambda truth: truth == "none"),
             _count(own, ("right", "set_with"), lambda truth: truth in EFFECTS),
             _count(own, ("unknown",), lambda truth: truth in OUTSIDE),
         )
-        yield f"| {structure} | {effort} | {' | '.join(counts)} |"
+        yield f"| {structure} | {' | '.join(counts)} |"
 
 
 def _count(cases, answers, belongs):
-    own = [case for case in cases if belongs(case.truth)]
+    own = [case for case in cases if belongs(case.truth) and not case.unseen]
     return f"{sum(case.answer in answers for case in own)} of {len(own)}"
 
 

@@ -14,11 +14,11 @@ import outside_forces
 import own_laboratory
 import pytest
 import xarray as xr
-from case_files import CALIBRATION_SEEDS, SEEDS, load_plan
+from case_files import CALIBRATION_SEEDS, OPEN_SEEDS, SEEDS, load_plan
 from case_noise import ACCELEROMETER_NOISE, MARKER_NOISE, add_noise, true_noise
 from case_truth import SIZES, follow, true_causes, true_numerics, true_parameters, true_table
 from effect_forms import FORM_NUMERICS, FORMS, distort
-from make_case import STRUCTURES, structure_file
+from make_case import structure_file
 from outside_forces import OUTSIDE
 
 from blockshake.diagnosis.nominal.nominal_model import MODELS, draw_nominal
@@ -163,10 +163,12 @@ def test_the_maker_loads_nothing_of_the_diagnosis():
         )
 
 
-@pytest.mark.parametrize("seeds", [SEEDS, CALIBRATION_SEEDS])
+@pytest.mark.parametrize("seeds", [SEEDS, CALIBRATION_SEEDS, OPEN_SEEDS])
 def test_causes_are_as_planned_and_within_the_priors(seeds):
-    structures = {path.stem: load_structure(path) for path in STRUCTURES.glob("*.yaml")}
-    for case in load_plan(seeds).cases:
+    cases = load_plan(seeds).cases
+    names = {case.structure for case in cases}
+    structures = {name: load_structure(structure_file(name)) for name in names}
+    for case in cases:
         structure = structures[case.structure]
         causes = true_causes(case.causes, case.size, structure, 3, case.seed)
         assert tuple(cause["name"] for cause in causes) == case.causes

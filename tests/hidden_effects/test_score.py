@@ -1,30 +1,37 @@
 """The scorer: perfect verdicts score 100 %, shuffled truths chance; its page holds what its file says."""
 
 import json
+from collections import Counter
+from dataclasses import replace
 
 import case_plan
 import numpy as np
 import pytest
 import score
+from answer_file import load_answer
 from answers import Scored
 from case_files import (
     CALIBRATION_SEEDS,
+    OPEN_SEEDS,
     PAGE,
-    ROOT,
+    README,
+    SEEDS,
     SMALL_SEEDS,
     TRACK_RECORD,
     load_plan,
     truth_of,
     verdict_of,
 )
-from case_plan import name_of_test
 from case_truth import true_causes
-from make_case import structure_file
+from draw_cases import CLEAN, FORMS, SLIDING, as_text, draw_cases
+from draw_cases import STRUCTURES as BY_STRUCTURE
+from make_case import LABORATORIES, structure_file
+from oracle_gain import ResponseGains
 from outside_forces import OUTSIDE
 from score import make_track_record
-from score_figures import LATE, figures
+from score_figures import LATE, figures, shares
 from scored_record import load_scored_record, write_scored_record
-from track_record_text import as_markdown, block_of, with_block
+from track_record_text import as_markdown, block_of, in_words, with_block
 
 from blockshake.diagnosis.verdict.verdict import Verdict, write_verdict
 from blockshake.effects.registry import EFFECTS
@@ -34,19 +41,26 @@ from blockshake.geometry.structure import load_structure
 
 PLAN = load_plan()
 EMPTY = "<!-- figures: begin -->\nold\n<!-- figures: end -->"
-STRUCTURES = {name: load_structure(structure_file(name)) for name in PLAN.efforts}
-BAD = {"false_alarms", "confidently_wrong", "false_beside", "outside_named", "single_called_pair"}
+STRUCTURES = {
+    name: load_structure(structure_file(name))
+    for name in {case.structure for seeds in (SEEDS, SMALL_SEEDS) for case in load_plan(seeds).cases}
+}
+BAD = {
+    "false_alarms", "confidently_wrong", "false_beside", "outside_named", "single_called_pair", "unseen", "gain_idle",
+    "gain_harmful",
+}  # fmt: skip
 BODY, OTHER = "block-1", "block-2"
 
 
 def _truth(case):
-    tests = case_plan.planned_tests(case.structure, case.seed, case.gain is not None)
+    tests = case_plan.planned_tests(case.structure, case.seed, case.gain is not None, case.strength)
     structure = STRUCTURES[case.structure]
     far = {body.name: [-1.0, 1.0] for body in structure.file.bodies}
     return {
         "causes": true_causes(case.causes, case.size, structure, len(tests), case.seed), "size": case.size,
         "seed": case.seed, "structure": case.structure, "sealed": case.gain is not None,
-        "tests": {name_of_test(motion, scale): {"role": role, "drift": far} for motion, scale, role in tests},
+        "laboratory": case.laboratory, "moved": 9.0 if set(case.causes) & set(OUTSIDE) else None,
+        "tests": {f"test-{n + 1}": {"role": role, "drift": far} for n, (_, _, role) in enumerate(tests)},
     }  # fmt: skip
 
 
@@ -101,39 +115,46 @@ def _perfect(truth):
 
 @pytest.fixture(scope="module")
 def perfect():
-    truths = {case.name: _truth(case) for case in PLAN.cases}
-    return [Scored(name, truth, _perfect(truth)) for name, truth in truths.items()]
-
-
-# effects that joined the registry after the cases were sealed: the next plan has them
-UNSCORED = (
-    "slip-weakening-friction",
-    "friction-asymmetry",
-    "block-mass",
-    "sensor-drift",
-    "sensor-saturation",
-)
+    contrast = {"estimate": 0.9, "lower": 0.8, "upper": 1.0}
+    gains = ResponseGains(proposed=True, found=contrast, oracle=contrast)
+    truths = [(case, _truth(case)) for case in PLAN.cases]
+    return [Scored(case.name, truth, _perfect(truth), gains if case.gain else None) for case, truth in truths]
 
 
 def test_the_plan_is_what_was_asked_for():
-    kinds, by_cause = {}, {}
-    for case in PLAN.cases:
-        kind = "pair" if len(case.causes) == 2 else "single" if case.causes else "clean"
-        kinds.setdefault(kind, []).append(case.structure)
-        if len(case.causes) == 1:
-            key = case.causes[0], case.size
-            by_cause[key] = by_cause.get(key, 0) + 1
-    assert kinds["clean"].count("two-blocks") == 60
-    assert len(kinds["clean"]) == 80
-    assert len(kinds["pair"]) == 24
-    wanted = {(name, size): 3 for name in EFFECTS if name not in UNSCORED for size in ("small", "large")}
-    assert by_cause == wanted | {(name, None): 6 for name in OUTSIDE}
-    for structure in ("bridged-walls", "six-block-wall"):
-        assert [kinds[kind].count(structure) for kind in ("clean", "single", "pair")] == [5, 20, 4]
-    everywhere = [*PLAN.cases, *load_plan(CALIBRATION_SEEDS).cases]
+    assert len(PLAN.cases) >= 300
+    assert sum(not case.causes for case in PLAN.cases) >= 100
+    assert sum(len(case.causes) == 2 for case in PLAN.cases) == 40
+    assert sum(case.gain == "responses" for case in PLAN.cases) >= 40
+    single = [case for case in PLAN.cases if len(case.causes) == 1]
+    for laboratory in LABORATORIES:
+        own = Counter((case.causes[0], case.size) for case in single if case.laboratory == laboratory)
+        wanted = {(name, size): 1 for name in EFFECTS for size in ("small", "large")}
+        assert own == wanted | {(name, None): FORMS[laboratory] for name in OUTSIDE}
+    assert {case.structure for case in PLAN.cases} == {*BY_STRUCTURE, SLIDING}
+    assert {case.strength for case in PLAN.cases} == set(case_plan.STRENGTHS)
+    opened = [case for seeds in (CALIBRATION_SEEDS, OPEN_SEEDS) for case in load_plan(seeds).cases]
+    # the open cases have one laboratory less than the sealed ones
+    assert {case.laboratory for case in opened} == {"home", "mujoco"}
+    everywhere = [*PLAN.cases, *opened]
     assert (
         len({case.seed for case in everywhere}) == len({case.name for case in everywhere}) == len(everywhere)
     )
+
+
+def test_the_sealed_list_is_what_its_number_draws():
+    text = SEEDS.read_text(encoding="utf-8")
+    seed = int(text.split("--seed ")[1].split(".")[0])
+    assert text == as_text(draw_cases(seed), seed, True)
+
+
+def test_a_part_of_the_list_keeps_its_strata():
+    whole, part = (Counter(case.stratum for case in PLAN.chosen(share).cases) for share in ("1/1", "1/4"))
+    assert whole.keys() == part.keys()
+    assert all(part[one] == -(-count // 4) for one, count in whole.items())
+    assert {case.laboratory for case in PLAN.chosen(laboratory="mujoco").cases} == {"mujoco"}
+    with pytest.raises(InputError, match="1/4"):
+        PLAN.chosen("a quarter")
 
 
 def test_perfect_verdicts_score_full(perfect):
@@ -144,10 +165,9 @@ def test_perfect_verdicts_score_full(perfect):
         assert share.n > 0, name
     medians = found["medians"]
     assert medians["gain_named"].estimate == medians["gain_rows_described"].estimate == 0.9
-    assert medians["gain_clean"].estimate == 0.0
     assert all(median.met in (True, None) for median in medians.values())
     assert sum(row.answers.n for row in found["confusion"]) == len(PLAN.cases)
-    assert sum(row.answers.unknown for row in found["confusion"]) == 48
+    assert sum(row.answers.unknown for row in found["confusion"]) == len(OUTSIDE) * sum(FORMS.values())
 
 
 def test_shuffled_truths_score_chance(perfect):
@@ -174,8 +194,8 @@ def test_always_none_is_never_wrong_and_finds_nothing(perfect):
     silent = figures([Scored(case.name, case.truth, _verdict("none")) for case in perfect])["shares"]
     assert silent["false_alarms"].hits == silent["confidently_wrong"].hits == silent["false_beside"].hits == 0
     # 0 of n: 1 - 0.025^(1/n)
-    assert silent["false_alarms"].n == 80
-    assert silent["false_alarms"].upper == pytest.approx(1.0 - 0.025 ** (1.0 / 80.0))
+    assert silent["false_alarms"].n == sum(CLEAN.values())
+    assert silent["false_alarms"].upper == pytest.approx(1.0 - 0.025 ** (1.0 / silent["false_alarms"].n))
     assert not any(silent[key].met for key in ("exact_large", "outside_unknown", "outside_form", "pairs_one"))
 
 
@@ -312,7 +332,7 @@ def test_intervals_of_medians_are_order_statistics():
 
 
 def test_the_track_record_comes_back_from_its_file(perfect, tmp_path):
-    track_record = make_track_record(perfect, PLAN.efforts, PLAN.digest)
+    track_record = make_track_record(perfect, PLAN)
     write_scored_record(tmp_path / "track-record.json", track_record)
     assert load_scored_record(tmp_path / "track-record.json") == track_record
     page = with_block(f"before\n{EMPTY}\nafter\n", "figures", as_markdown(track_record))
@@ -326,12 +346,23 @@ def test_scoring_goes_from_the_files_of_a_run_to_track_record_and_page(perfect, 
     for case in perfect:
         write_json(truth_of(tmp_path, case.name), case.truth)
         write_verdict(verdict_of(tmp_path, case.name), case.verdict)
-    page, record = tmp_path / "page.md", tmp_path / "track-record.json"
+    page, record, readme = tmp_path / "page.md", tmp_path / "track-record.json", tmp_path / "readme.md"
     page.write_text(EMPTY)
-    asked = ["--results", str(tmp_path), "--track-record", str(record), "--page", str(page)]
+    readme.write_text(EMPTY.replace("figures", "record"))
+    asked = [
+        "--results",
+        str(tmp_path),
+        "--track-record",
+        str(record),
+        "--page",
+        str(page),
+        "--readme",
+        str(readme),
+    ]
     score.main(asked)
     text = as_markdown(load_scored_record(record))
     assert block_of(page.read_text(), "figures") == text == capsys.readouterr().out.strip()
+    assert block_of(readme.read_text(), "record") == in_words(load_scored_record(record))
     verdict_of(tmp_path, perfect[0].name).unlink()
     with pytest.raises(InputError):
         score.main(asked)
@@ -358,7 +389,7 @@ def test_another_plan_than_the_sealed_one_is_printed_alone(tmp_path, capsys):
     ],
 )
 def test_a_track_record_that_contradicts_itself_is_refused(perfect, tmp_path, change, key):
-    record = make_track_record(perfect, PLAN.efforts, PLAN.digest).model_dump(mode="json")
+    record = make_track_record(perfect, PLAN).model_dump(mode="json")
     change(record)
     (tmp_path / "track-record.json").write_text(json.dumps(record))
     with pytest.raises(InputError) as error:
@@ -384,39 +415,74 @@ def test_the_page_shows_what_the_file_says(record):
     assert block_of(PAGE.read_text(encoding="utf-8"), "figures") == as_markdown(record)
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "false_alarms", "confidently_wrong", "truth_in_set", "truth_in_set_seen", "exact_large_alone", "false_beside",
-        "single_called_pair", "pairs_one", "pairs_both", "outside_unknown", "outside_named",
-    ],
-)  # fmt: skip
-def test_the_words_of_the_page_say_what_the_file_says(record, name):
-    _, words = PAGE.read_text(encoding="utf-8").split("<!-- figures: end -->")
-    share = record.shares[name]
-    assert f"{share.hits} of {share.n}" in " ".join(words.split())
-
-
 def test_the_readme_says_what_the_file_says(record):
-    readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
-    assert f"We made {len(record.cases)} " in readme
-    for name, words in {
-        "truth_in_set_seen": "in {share:.0f} % of the {n} (goal {goal:.0f} %)",
-        "false_alarms": "in {share:.0f} % of the {n} (goal {goal:.0f} %)",
-        "outside_unknown": "in {share:.0f} % of the {n} (goal {goal:.0f} %)",
-        "outside_named": "in {share:.0f} % (goal {goal:.0f} %)",
-    }.items():
-        share = record.shares[name]
-        assert words.format(share=100.0 * share.estimate, n=share.n, goal=100.0 * share.goal) in readme, name
-    answers = {row.truth: row.answers for row in record.confusion}
-    for names, words in {
-        ("drag", "dry-drag"): "drags and dry drags are called unknown in {hits} of {n}",
-        ("push", "spring-once"): "springs and pushes in {hits} of {n}",
-        ("rope",): "ropes in {hits} of {n}",
-        ("edge", "weight"): "changed edges and loose weights in {hits} of {n}",
-        ("blow",): "blows in {hits} of {n}",
-    }.items():
-        own = [answers[f"outside-{name}"] for name in names]
-        assert words.format(hits=sum(one.unknown for one in own), n=sum(one.n for one in own)) in readme, (
-            names
-        )
+    assert block_of(README.read_text(encoding="utf-8"), "record") == in_words(record)
+
+
+def test_a_cause_that_moves_nothing_is_counted_apart(perfect):
+    struck = next(case for case in perfect if case.kind == "outside")
+    still = replace(struck, truth=struck.truth | {"moved": 1.0}, verdict=_verdict("none"))
+    found = shares([still])
+    assert (found["unseen"].hits, found["outside_unknown"].n) == (1, 0)
+
+
+def test_a_program_that_always_says_none_is_scored_by_its_files_alone(perfect, tmp_path, capsys):
+    for case in perfect:
+        write_json(truth_of(tmp_path / "made", case.name), case.truth)
+        write_json(tmp_path / "said" / case.name / "verdict.json", {"decision": "none"})
+    score.main(["--results", str(tmp_path / "made"), "--verdicts", str(tmp_path / "said")])
+    out = capsys.readouterr().out
+    assert (
+        "| an effect is called where there is none | 0.000 (0 of 32) | 0.000 (0 of 46) | 0.000 (0 of 36) |"
+        in out
+    )
+    known = len(EFFECTS) * 2
+    assert f"| the truth is named or in the set | 0.000 (0 of {known}) |" in out
+
+
+def test_an_answer_that_contradicts_itself_is_one_line(tmp_path):
+    write_json(tmp_path / "verdict.json", {"decision": "named"})
+    with pytest.raises(InputError, match="expected one cause for 'named'"):
+        load_answer(tmp_path / "verdict.json")
+
+
+GAIN = {"estimate": 0.5, "lower": 0.4, "upper": 0.6}
+
+
+@pytest.mark.parametrize(
+    ("gains", "share", "idle"),
+    [
+        ({"proposed": True, "found": GAIN, "oracle": GAIN}, 1.0, False),
+        ({"proposed": True, "found": None, "oracle": GAIN}, 0.0, False),
+        ({"proposed": False, "found": None, "oracle": GAIN}, None, False),
+        ({"proposed": True, "found": GAIN, "oracle": None}, None, True),
+        (
+            {"proposed": True, "found": GAIN, "oracle": {"estimate": 0.1, "lower": -0.2, "upper": 0.4}},
+            None,
+            True,
+        ),
+    ],
+)
+def test_a_gain_is_held_against_the_oracles(gains, share, idle):
+    gains = ResponseGains(**gains)
+    assert (gains.share, gains.idle) == (share, idle)
+
+
+def test_an_extension_that_predicts_worse_is_counted(perfect):
+    gains = ResponseGains(proposed=True, found={"estimate": -0.3, "lower": -0.9, "upper": 0.1}, oracle=GAIN)
+    gained = [replace(case, gains=gains) for case in perfect if case.kind == "effect"][:3]
+    found = figures(gained)
+    assert (found["shares"]["gain_harmful"].hits, found["shares"]["gain_harmful"].met) == (3, False)
+    assert found["medians"]["gain_over_oracle"].estimate == pytest.approx(-0.6)
+    assert [one.found.estimate for one in found["gains"]] == [-0.3] * 3
+
+
+def test_a_report_has_the_figure_of_the_worst_laboratory(perfect):
+    alarmed = [
+        replace(case, verdict=_verdict("named", ["eccentricity"]))
+        if case.kind == "clean" and case.laboratory == "mujoco"
+        else case
+        for case in perfect
+    ]
+    laboratory, worst = make_track_record(alarmed, PLAN).worst["false_alarms"]
+    assert (laboratory, worst.hits, worst.n) == ("mujoco", 46, 46)

@@ -214,18 +214,25 @@ def track_record():
     """A track record with a goal that is met and one that is missed, and a share without a goal."""
 
     def share(meaning, hits, n, goal, side):
-        bounds = {"lower": 0.01, "upper": 0.9}
+        bounds = {"lower": 0.0, "upper": 1.0}
         return {"meaning": meaning, "hits": hits, "n": n, "goal": goal, "side": side, **bounds}
 
-    empty = {"efforts": {}, "medians": {}, "confusion": [], "cases": []}
+    empty = {"medians": {}, "confusion": [], "cases": []}
     origin = {"date": "2026-11-20", "commit": "0123456789ab", "machine": "made up", "seeds": "none"}
+
+    def shares(alarms, covered):
+        return {
+            "false-alarm": share("clean campaigns called an effect", alarms, 30, 0.05, "at most"),
+            "covered": share("truth named or in the set", covered, 6, 0.88, "at least"),
+            "other": share("a share that has no goal", 1, 2, None, "at least"),
+        }
+
     return {
         **origin,
         **empty,
+        "version": 2,
         "procedure": "ba9876543210",
-        "shares": {
-            "false-alarm": share("clean campaigns called an effect", 1, 60, 0.05, "at most"),
-            "covered": share("truth named or in the set", 4, 6, 0.88, "at least"),
-            "other": share("a share that has no goal", 1, 2, None, "at least"),
-        },
+        "part": "1/4",
+        "shares": shares(1, 5),
+        "laboratories": {"home": shares(0, 6), "mujoco": shares(1, 4)},
     }

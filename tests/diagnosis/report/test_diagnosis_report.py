@@ -198,11 +198,15 @@ def test_a_track_record_of_an_earlier_program_is_called_so(fakes, pages):
     fakes["none"].track_record.unlink()
 
 
-def test_track_record_prints_the_shares_with_a_goal(pages, documents):
+def test_track_record_prints_the_worst_laboratory_of_every_share_with_a_goal(pages, documents):
     (table,) = blocks_of(documents["named"], "table", "track-record")
-    assert [(row[0], row[2], row[-1]) for row in table.rows] == [
-        ("clean campaigns called an effect", "1 of 60", "met"), ("truth named or in the set", "4 of 6", "missed"),
-    ]  # fmt: skip
+    assert [(row[0], row[1], row[3], row[-1]) for row in table.rows] == [
+        ("clean campaigns called an effect", "mujoco", "1 of 30", "met"),
+        ("truth named or in the set", "mujoco", "4 of 6", "missed"),
+    ]
+    assert any(
+        "1/4 of its cases" in block.text for block in blocks_of(documents["named"], "text", "track-record")
+    )
     assert "This procedure has no track record yet" in pages["none"][1]
 
 

@@ -9,7 +9,8 @@ from blockshake.files import load_json
 from blockshake.sources import script_sources, source_digest
 from blockshake.validation import Count, Fraction, Strict, validated
 
-VERSION = 1
+VERSION = 2
+WHOLE = "1/1"
 
 
 class Share(Strict):
@@ -54,7 +55,33 @@ class TrackRecord(Strict):
     date: str = Field(description="day of the scoring, year-month-day")
     commit: str = Field(description="of the sources that were tried")
     procedure: str = Field(description="digest of the sources that decided")
+    part: str = Field(WHOLE, description="of the list of cases that was judged")
     shares: dict[str, Share]
+    laboratories: dict[str, dict[str, Share]] = Field(description="the same figures by laboratory")
+    abroad: dict[str, Share] = Field(
+        default_factory=dict, description="of all laboratories but the own one, `home`"
+    )
+
+    @property
+    def worst(self):
+        """Laboratory and share of every figure with a goal, by name, in the laboratory where it is worst.
+
+        The later of two equals counts: it stands farther from home.
+        """
+        found = {}
+        for name, pooled in self.shares.items():
+            own = [(one, shares[name]) for one, shares in self.laboratories.items() if shares[name].n]
+            if pooled.goal is not None and own:
+                sign = 1.0 if pooled.side == "at most" else -1.0
+                found[name] = max(reversed(own), key=lambda entry: sign * entry[1].estimate)
+        return found
+
+    @model_validator(mode="after")
+    def _of_the_same_figures(self):
+        for one, shares in self.laboratories.items():
+            if shares.keys() != self.shares.keys():
+                raise ValueError(f"expected the same figures of the laboratory {one} as of all")
+        return self
 
 
 def procedure_digest():

@@ -1,8 +1,8 @@
 """Eighth section of a diagnosis: how often the procedure was right where the truth was known."""
 
-from blockshake.diagnosis.verdict.track_record import procedure_digest
+from blockshake.diagnosis.verdict.track_record import WHOLE, procedure_digest
 from blockshake.pages.blocks import Section, Table, Text
-from blockshake.pages.wording import MISSING, percent
+from blockshake.pages.wording import percent
 
 _MET = {True: "met", False: "missed"}
 
@@ -19,10 +19,13 @@ def track_record_section(diagnosed):
     blocks = [
         Text(
             f"The procedure was run on {record.date}, sources {record.commit}, on campaigns in which the "
-            "truth was known to the scorer alone (docs/results/hidden-effects.md). The figures hold for such "
-            "campaigns; on another structure they are an indication."
+            "truth was known to the scorer alone (docs/results/hidden-effects.md). Each figure is that of the "
+            "laboratory in which it is worst. The figures hold for such campaigns; on another structure they are an "
+            "indication."
         )
     ]
+    if record.part != WHOLE:
+        blocks.append(Text(f"A part of the list was judged: {record.part} of its cases."))
     if record.procedure != procedure_digest():
         words = "The program that decides has been changed since: the track record is that of an earlier one."
         blocks.append(Text(words, strong=True))
@@ -31,15 +34,15 @@ def track_record_section(diagnosed):
 
 def _shares(record):
     rows = []
-    for one in (one for one in record.shares.values() if one.goal is not None):
+    for laboratory, one in record.worst.values():
         rows.append((
-            one.meaning, MISSING if one.estimate is None else f"{percent(one.estimate)} %", f"{one.hits} of {one.n}",
+            one.meaning, laboratory, f"{percent(one.estimate)} %", f"{one.hits} of {one.n}",
             f"{percent(one.lower)} to {percent(one.upper)} %",
             f"{one.side} {percent(one.goal)} %", _MET.get(one.met, ""),
         ))  # fmt: skip
     return Table(
         "Shares of the cases with intervals of 95 %, and the goals set beforehand.",
-        ("Figure", "Found", "Cases", "Interval", "Goal", ""),
+        ("Figure", "Laboratory", "Found", "Cases", "Interval", "Goal", ""),
         tuple(rows),
-        "lrrrrl",
+        "llrrrrl",
     )
