@@ -28,17 +28,20 @@ _NO_NUMBER = -(2**31)  # stands for NaN in packed variables
 _FULL = (errno.ENOSPC, errno.EDQUOT)
 _FURTHER = 2**16  # bytes, more than a file system keeps in hand for a file's end
 _MERGE = "tag:yaml.org,2002:merge"
+_TRUTH, _TEXT = "tag:yaml.org,2002:bool", "tag:yaml.org,2002:str"
 
 
 class _StrictLoader(yaml.CSafeLoader):
     """Decimal numbers alone, ``1e-5`` included, no dates and no key twice.
 
-    YAML 1.1 reads ``02400`` as an octal number, ``1:30`` as 90 and ``1_000`` as 1000: here each is a text.
+    YAML 1.1 reads ``02400`` as an octal number, ``1:30`` as 90 and ``1_000`` as 1000: here each is a text, and so is a
+    key ``on`` or ``no``, which is a truth value there.
     """
 
     def construct_mapping(self, node, deep=False):
         known = set()
         for key in (key for key, _ in node.value if isinstance(key, yaml.ScalarNode)):
+            key.tag = _TEXT if key.tag == _TRUTH else key.tag
             value = key.value if key.tag == _MERGE else self.construct_object(key)
             if value in known:
                 raise yaml.constructor.ConstructorError(

@@ -49,6 +49,8 @@ PHYSICAL = (
     Quantity("bodies.BODY.orientation", "1", "unit quaternion w, x, y, z at the start", "structure file"),
     Quantity("bodies.BODY.velocity", "m/s", "velocity at the start", "structure file"),
     Quantity("bodies.BODY.angular_velocity", "rad/s", "angular velocity at the start", "structure file"),
+    Quantity("bodies.BODY.offset", "m", "shift of a body laid `on` another, along x and y", "structure file"),
+    Quantity("shapes.SHAPE.box", "m", "edge lengths of a box", "structure file"),
     Quantity("shapes.SHAPE.chamfer", "m", "leg of the 45-degree chamfer of a box", f"{_PAPER}, section LS-DEM"),
     Quantity("shapes.SHAPE.hollow", "m", "depth of the middle of each face below its rim", "docs/theory/rocking.md"),
     Quantity("stoppers.INDEX.gap", "m", "clearance of a stopper, counted from 0", "structure file"),
@@ -58,7 +60,11 @@ PHYSICAL = (
     Quantity("external_forces.INDEX.damping", "N s/m", "of a viscous drag from outside", "structure file"),
     Quantity("external_forces.INDEX.drag", "N", "of a dry drag from outside", "structure file"),
 )  # fmt: skip
+MOTION = {"motion.scale": "1", "motion.heading": "rad"}
+"""Units of what a sample may change of the motion that drives it: a factor, and a turn about z."""
 _OF_VECTOR = r"(\.[xyz])?$"
+_VECTORS = ("gravity", "mass_offset", "position", "offset", "velocity", "angular_velocity", "box")
+_NO_NUMBERS = ("inertia", "orientation")  # whose parts do not change alone
 
 
 def unit_of(name):
@@ -68,6 +74,16 @@ def unit_of(name):
         if re.match(pattern + _OF_VECTOR, name):
             return quantity.unit
     return None
+
+
+def unit_of_number(name):
+    """The same of a parameter that is one number, as random variables are."""
+    parts = name.split(".")
+    whole = parts[:-1] if len(parts) > 1 and parts[-1] in "xyz" and parts[-2] in _VECTORS else parts
+    is_part = len(whole) < len(parts)
+    if set(_NO_NUMBERS) & set(parts) or (whole[-1] in _VECTORS) != is_part:
+        return None
+    return unit_of(name)
 
 
 _DENSITIES = (100.0, 25000.0)

@@ -27,6 +27,8 @@ from blockshake.virtual.settings import VirtualCampaign, load_settings
 # keys that exclude others of the good files, or that `extend-study` writes: tested beside what they are for
 ELSEWHERE = (
     "shapes.*.mesh",
+    "bodies.*.on",
+    "bodies.*.offset",
     "tests.*.outcome",
     "cases.*.intensity.measure",
     "cases.*.intensity.period",

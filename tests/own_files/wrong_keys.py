@@ -221,7 +221,7 @@ ROWS = {
         ("ensemble.correlation", "impossible.csv", "expected a correlation in [-1, 1]"),
         ("ensemble.linked", {"friction.plate.plate": "friction.a.b"}, "expected a parameter that one of"),
         ("ensemble.linked", {"friction.granite.granite": "friction.a.b"}, "one of the random variables"),
-        ("ensemble.linked", {"colour": FRICTION}, "expected a friction coefficient"),
+        ("ensemble.linked", {"colour": FRICTION}, "expected a number of the structure"),
         ("ensemble.linked", {"materials.plate.density": FRICTION}, "expected a variable in kg/m3"),
         ("ensemble.linked", {TURNED: FRICTION}, "neither sampled nor linked already"),
         ("ladder.first", 9.0, "`highest` not below `first`"),

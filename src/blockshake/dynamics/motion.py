@@ -58,6 +58,26 @@ class GroundMotion(Shown):
         scale = float(self.attributes.get("scale", 1.0) * factor)
         return replace(self, table=table, attributes={**self.attributes, "scale": scale})
 
+    def turned(self, heading: float) -> "GroundMotion":
+        """The same motion from another heading: x and y turned about z by ``heading``, from x to y [rad].
+
+        Raises
+        ------
+        InputError
+            A motion with a pitch, which is about y alone.
+        """
+        if heading == 0.0:
+            return self
+        breaks, coefficients = self.table
+        if coefficients[:, PITCH].any():
+            raise InputError(self.name, "heading", "expected a motion without pitch, to be turned")
+        cosine, sine = np.cos(heading), np.sin(heading)
+        along, across = coefficients[:, 0], coefficients[:, 1]
+        turned = coefficients.copy()
+        turned[:, 0], turned[:, 1] = cosine * along - sine * across, sine * along + cosine * across
+        attributes = {**self.attributes, "heading": self.attributes.get("heading", 0.0) + heading}
+        return replace(self, table=MotionTable(breaks, turned), attributes=attributes)
+
     def delayed(self, late: float) -> "GroundMotion":
         """The same motion, ``late`` after a rest at its first row; not negative [s]."""
         if late == 0.0:

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field, model_serializer, model_validator
 
 from blockshake.validation import Finite, Fraction, NotNegative, Positive, Strict
 
@@ -74,7 +74,20 @@ class Body(Strict):
     name: Name = Field(description="no dot, slash or space")
     shape: str = Field(description="one of `shapes`")
     material: str = Field(description="one of `materials`")
-    position: Vector = Field(description="centroid of the shape, world frame [m]")
+    position: Vector | None = Field(
+        None, description="centroid of the shape, world frame [m]; none of a body that is laid `on` another"
+    )
+    on: str | None = Field(
+        None,
+        description="body on which this one is laid, its lowest point on the other's highest along z: it follows the "
+        "sizes of both",
+        exclude_if=lambda given: given is None,  # a structure without any keeps its digest
+    )
+    offset: Vector | None = Field(
+        None,
+        description="of a body laid `on` another: of its centroid from the other's along x and y, and gap along z [m]",
+        exclude_if=lambda given: given is None,
+    )
     orientation: Quaternion = Field(
         (1.0, 0.0, 0.0, 0.0), description="unit quaternion w, x, y, z, body to world"
     )
@@ -91,6 +104,29 @@ class Body(Strict):
         "none: that of the shape at an even density [kg m2]",
         exclude_if=lambda given: given is None,  # a structure without any keeps its digest
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _beside_none(cls, given):
+        if isinstance(given, dict) and given.get("on") is not None:
+            return {"offset": (0.0, 0.0, 0.0)} | given
+        return given
+
+    @model_validator(mode="after")
+    def _has_one_place(self):
+        if (self.position is None) == (self.on is None):
+            raise ValueError("expected either position, or on with the name of a body below")
+        if self.offset is not None and self.on is None:
+            raise ValueError("expected no offset of a body with a position")
+        return self
+
+    @model_serializer(mode="wrap")
+    def _as_stated(self, serialize):
+        """A place that follows from a body below is no part of the file."""
+        stated = serialize(self)
+        if self.on is not None:
+            del stated["position"]
+        return stated
 
 
 class Friction(Strict):

@@ -11,6 +11,7 @@ import trimesh
 
 from blockshake.errors import InputError
 from blockshake.files import AnyPath, content_digest, load_yaml, named_file
+from blockshake.geometry.laying import laid
 from blockshake.geometry.mass_offset import check_offset, offset_inertia, offset_solid, stated_inertia
 from blockshake.geometry.meshes.mesh_file import read_mesh
 from blockshake.geometry.overlap import depths_of_pairs, near_pairs
@@ -203,8 +204,9 @@ def build_structure(mapping, source, folder, known=None):
     for body in file.bodies:
         check_offset(body, solids[body.shape], source)
     mass, inertia = _masses(file, solids, source)
-    centroid = np.array([body.position for body in file.bodies])
     orientation = unit_quaternions(file, source)
+    file = laid(file, solids, orientation, source)
+    centroid = np.array([body.position for body in file.bodies])
     check_transducers(file, orientation, source)
     check_points(file, solids, source)
     offset = np.array([body.mass_offset for body in file.bodies])

@@ -61,11 +61,15 @@ def replace_into(mapping, key, value, source):
         return
     if not isinstance(node, dict):
         raise InputError(source, key, "expected a parameter of this structure")
+    if parts[0] == "bodies" and parts[-1] == "position":  # no longer laid on another body
+        node.pop("on", None), node.pop("offset", None)
     node[parts[-1]] = value
 
 
 def _is_vector(node):
-    return isinstance(node, list) and len(node) == len(AXES) and all(isinstance(one, float) for one in node)
+    return (
+        isinstance(node, list) and len(node) == len(AXES) and all(type(one) in (int, float) for one in node)
+    )
 
 
 def dotted_values(node, name=""):

@@ -20,6 +20,9 @@ _NAMES = {
     "ls_dem.normal_stiffness": "normal stiffness k_n",
     "ls_dem.shear_stiffness": "shear stiffness k_s",
     "restitution": "restitution C_res",
+    "nscd_restitution": "Newton's restitution",
+    "motion.scale": "factor of the motion",
+    "motion.heading": "heading of the motion",
     "hollow": "hollow of the faces over their edge",
     "stiffness_factor": "factor of contact stiffness",
 }
@@ -39,9 +42,12 @@ def parameter_label(name):
     if kind == "extension":  # a part of a vector has its axis at the end
         places, key = (rest[1:-2], " ".join(rest[-2:])) if rest[-1] in AXES else (rest[1:-1], rest[-1])
         return f"cause: {key.replace('_', ' ')} of {' and '.join(places)}"
-    if kind == "friction":
-        return f"friction, {rest[0]} on {rest[1]}"
-    return f"{_PROPERTIES.get(rest[1], rest[1])} of {rest[0]}"
+    if kind in ("friction", "joints"):
+        words = ["friction", *rest[2:]] if kind == "friction" else rest[2:]
+        return f"{' '.join(words).replace('_', ' ')}, {rest[0]} on {rest[1]}"
+    if kind in ("materials", "shapes", "bodies"):
+        return f"{_PROPERTIES.get(rest[1], ' '.join(rest[1:]).replace('_', ' '))} of {rest[0]}"
+    return " ".join(name.split(".")).replace("_", " ")
 
 
 def number(value, digits=3):

@@ -117,7 +117,10 @@ MODELS = {
             refusal="blockshake.solvers.ls_dem.surfaces:check_shapes",
             calibrated=("normal_stiffness", "shear_stiffness"),
             own_stiffness="blockshake.solvers.ls_dem.parameters:own_stiffness",
-            without_effect=("viscous_modulus",),  # rigid blocks
+            without_effect=(
+                "viscous_modulus",
+                "nscd_restitution",
+            ),  # rigid blocks, and restitution of its own
             # the layout of the nodes, and the restitution that stands for damping
             perturbation=Perturbation(
                 stream=0,
@@ -138,7 +141,8 @@ MODELS = {
             driver="blockshake.solvers.nscd.driver:simulate_nscd",
             parameters="blockshake.solvers.nscd.parameters:NscdParameters",
             refusal="blockshake.solvers.nscd.contact.polyhedra:check_convex",
-            without_effect=("viscous_modulus", "youngs_modulus", "hollow"),  # rigid, and bearing on corners
+            # rigid, bearing on corners, and of a restitution of its own
+            without_effect=("viscous_modulus", "youngs_modulus", "hollow", "restitution"),
             # a closer time step where bodies meet, as studies should: docs/theory/nscd.md
             perturbation=Perturbation(
                 stream=1,
@@ -155,7 +159,7 @@ MODELS = {
             driver="blockshake.solvers.nscd_deformable.driver:simulate_elastic",
             parameters="blockshake.solvers.nscd.parameters:DeformableParameters",
             refusal="blockshake.solvers.nscd_deformable.elastic_bodies:check_boxes",
-            without_effect=("viscous_modulus", "hollow"),
+            without_effect=("viscous_modulus", "hollow", "restitution"),
             rigid=False,
         ),
         Model(
@@ -166,7 +170,7 @@ MODELS = {
             driver="blockshake.solvers.nscd_deformable.driver:simulate_viscoelastic",
             parameters="blockshake.solvers.nscd.parameters:DeformableParameters",
             refusal="blockshake.solvers.nscd_deformable.elastic_bodies:check_boxes",
-            without_effect=("hollow",),
+            without_effect=("hollow", "restitution"),
             needed=("viscous_modulus",),  # without one it is the elastic model
             rigid=False,
         ),

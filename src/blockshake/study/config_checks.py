@@ -8,12 +8,15 @@ import numpy as np
 import pandas as pd
 
 from blockshake.dynamics.baseline import check_window
+from blockshake.dynamics.collapse import COSINE_OF_TILT
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.record_set import DrawnMotions, is_record_set
 from blockshake.errors import InputError, faults_of
 from blockshake.files import HOME
+from blockshake.geometry.schema import EXTENSION
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.measurement.motion.joints import contact_normals, find_joints
 from blockshake.measurement.motion.measured_base import record_start
 from blockshake.measurement.sensors.markers import block_markers, driven_marker
 from blockshake.paths import check_plain
@@ -23,8 +26,8 @@ from blockshake.study.calibration.comparison import has_use, parameter_of
 from blockshake.study.calibration.settings import OTHERS, STIFFNESS
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED, check_record
 from blockshake.study.sampling.distributions import LINKED, TABLE_2, Discrete, known_as, parameter_unit
-from blockshake.study.sampling.latin_hypercube import complete_correlation
-from blockshake.study.sampling.sample_parameters import has_parameter, sample_parameters
+from blockshake.study.sampling.latin_hypercube import complete_correlation, draw_design
+from blockshake.study.sampling.sample_parameters import has_parameter, structure_parameters
 from blockshake.study.stiffness.tower import tower_of
 
 _NAME = re.compile(r"\w[\w.-]{0,99}")  # of a structure, a motion or a case: it names results
@@ -166,7 +169,7 @@ def check_structure(name, where, key):
 def typical_structure(structure, ensemble):
     """The structure with the medians of the variables."""
     medians = {name: one.median for name, one in ensemble.distributions.items()}
-    return structure.with_parameters(sample_parameters(pd.Series(medians), structure, ensemble.linked))
+    return structure.with_parameters(structure_parameters(pd.Series(medians), structure, ensemble.linked))
 
 
 def check_simulations(config, index, structure, motion, where):
@@ -222,9 +225,39 @@ def check_samples(ensemble, structures, where):
     for structure in structures.values():
 
         def parameters(row, structure=structure):
-            return sample_parameters(pd.Series(row), structure, ensemble.linked)
+            return structure_parameters(pd.Series(row), structure, ensemble.linked)
 
         check_ends(structure, ends, parameters, where, "ensemble.distributions")
+    if any(map(_is_of_places, variables)):
+        check_laid(ensemble, structures, where)
+
+
+def _is_of_places(name):
+    """Whether a variable changes sizes or places of blocks."""
+    kind, *parts = name.removeprefix(EXTENSION).split(".")
+    return (kind == "shapes" and parts[1] != "hollow") or (
+        kind == "bodies" and parts[1] in ("position", "offset")
+    )
+
+
+def check_laid(ensemble, structures, where):
+    """Refuse a sample whose blocks overlap, or that opens a bed joint of the structure; all samples are laid."""
+    values = draw_design(ensemble.model_dump()).values
+    lifted = {name.split(".")[1] for name in values if name.endswith(".offset.z")}
+    for name, structure in structures.items():
+        pairs, _ = find_joints(structure)
+        up = -np.array(structure.file.gravity)
+        beds = pairs[contact_normals(structure, pairs) @ up > COSINE_OF_TILT * np.linalg.norm(up)]
+        for sample, row in values.iterrows():
+            with faults_of(where, f"ensemble.distributions, sample {sample}"):
+                laid = structure.with_parameters(structure_parameters(row, structure, ensemble.linked))
+                for lower, upper in beds[~laid.touching[tuple(beds.T)]]:
+                    below, above = structure.body_names[lower], structure.body_names[upper]
+                    if above not in lifted:
+                        expected = (
+                            f"expected {above} to rest on {below} as in {name}: lay it there by `on: {below}`"
+                        )
+                        raise InputError(structure.source, f"bodies.{above}", expected)
 
 
 def check_ends(structure, ends, parameters, where, key):

@@ -30,7 +30,7 @@ def test_a_model_runs_its_solver_with_its_settings_and_shares_runs_that_are_the_
     store, motion = Store(tmp_path, "source", print), load_motion("basso-tirreno")
 
     def files_of(model, settings):
-        return simulate_samples(CaseRuns(CASE, model, settings, {}), lambda sample: motion, rows, store)
+        return simulate_samples(CaseRuns(CASE, model, settings, {}), lambda sample, row: motion, rows, store)
 
     printed = files_of("ls-dem-as-printed", PULLING)
     assert asked == [("ls-dem", 1e-5, {"ls_dem.pulling": True, "friction.concrete.concrete": 0.7})]

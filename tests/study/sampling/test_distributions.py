@@ -85,7 +85,7 @@ def test_config_replaces_table_2_as_a_whole():
     [
         ({"friction.concrete": {"mean": 1, "cov": 0.1}}, "friction.concrete"),
         ({"materials.concrete.densty": {"mean": 1, "cov": 0.1}}, "materials.concrete.densty"),
-        ({"shapes.block.chamfer": {"mean": 0.02, "cov": 0.1}}, "shapes.block.chamfer"),
+        ({"shapes.block.colour": {"mean": 0.02, "cov": 0.1}}, "shapes.block.colour"),
         ({"friction.a.b": {"mean": 1, "cov": 0.1, "sd": 2}}, "friction.a.b.sd"),
         ({"friction.a.b": {"mean": 1}}, "friction.a.b.cov"),
         ({"friction.a.b": {"mean": -1, "cov": 0.1}}, "friction.a.b.mean"),
@@ -108,8 +108,46 @@ def test_units_follow_the_property():
     assert parameter_unit("materials.steel.viscous_modulus") == "Pa s"
     assert parameter_unit("shapes.block.hollow") == "m"
     assert parameter_unit("ls_dem.shear_stiffness") == "N/m3"
-    with pytest.raises(InputError, match=r"ls_dem\.skin: expected"):
-        parameter_unit("ls_dem.skin")
+    with pytest.raises(InputError, match=r"nscd\.impact_parts: expected"):
+        parameter_unit("nscd.impact_parts")  # a count
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [
+        ("restitution", "1"),
+        ("shapes.block.box.z", "m"),
+        ("shapes.block.chamfer", "m"),
+        ("bodies.block-1.position.x", "m"),
+        ("bodies.block-1.offset.z", "m"),
+        ("bodies.block-1.mass_offset.y", "m"),
+        ("joints.slab.block-1.friction_factor", "1"),
+        ("stoppers.0.gap", "m"),
+        ("gravity.z", "m/s2"),
+        ("ls_dem.normal_stiffness", "N/m3"),
+        ("nscd.shrink", "1"),
+        ("motion.scale", "1"),
+        ("motion.heading", "rad"),
+    ],
+)
+def test_numbers_that_set_takes_can_be_drawn(name, unit):
+    assert load_distributions({name: {"mean": 0.5, "cov": 0.1}}, "study.yaml")
+    assert parameter_unit(name) == unit
+
+
+@pytest.mark.parametrize(
+    "name", ["bodies.a.position", "bodies.a.orientation.w", "bodies.a.inertia", "gravity"]
+)
+def test_a_vector_is_drawn_part_by_part(name):
+    with pytest.raises(InputError, match="a part of a vector by its axis"):
+        load_distributions({name: {"mean": 0.5, "cov": 0.1}}, "study.yaml")
+
+
+def test_a_joint_is_drawn_once_whatever_the_order_of_its_bodies():
+    entry = {"mean": 1.0, "cov": 0.1}
+    with pytest.raises(InputError, match="every pair once"):
+        load_distributions({"joints.a.b.compliance": entry, "joints.b.a.compliance": entry}, "study.yaml")
+    assert load_distributions({"friction.a.b": entry, "friction.a.b.rate_drop": entry}, "study.yaml")
 
 
 def test_true_parameters_are_independent_draws_of_table_2():
@@ -171,7 +209,7 @@ def test_the_density_of_a_tabulated_variable_is_that_of_its_quantiles():
             {"distribution": "tabulated", "values": [1.0, 2.0]},
             "unknown parameter",
         ),
-        ("shapes.block.chamfer", {"distribution": "tabulated", "values": [1.0, 2.0]}, "unknown parameter"),
+        ("shapes.block.box", {"distribution": "tabulated", "values": [1.0, 2.0]}, "unknown parameter"),
         ("extension.shapes.block.chamfer", {"distribution": "tabulated", "mean": 1.0}, "unknown key"),
     ],
 )

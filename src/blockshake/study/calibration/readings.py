@@ -97,7 +97,7 @@ def simulate_readings(test, model, settings, rows, time_steps, ensemble, store):
     motions = driving_motions(case, test.base, ensemble["seed"])
     found = []
     for sample, row in rows.iterrows():
-        motion = motions(sample)
+        motion = motions(sample, row)
         parameters = settings["parameters"] | sample_parameters(row, structure, ensemble["linked"])
 
         def simulated(checkpoint, sample=sample, motion=motion, parameters=parameters):

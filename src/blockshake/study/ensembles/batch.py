@@ -60,7 +60,7 @@ def simulate_samples(runs, motions, rows, store, base=None):
     identity = structure_digest(structure)
     finished = []
     for sample, row in rows.iterrows():
-        motion, parameters = motions(sample), runs.parameters(row, structure)
+        motion, parameters = motions(sample, row), runs.parameters(row, structure)
 
         def simulated(checkpoint, sample=sample, row=row, motion=motion, parameters=parameters):
             run = simulate(
@@ -90,6 +90,7 @@ def batch_rows(batch, files):
     first, last = (0, 0) if batch == HALF_STEP else map(int, batch.split("-"))
     tables = [load_design(path) for path in (files.design, files.stiffness) if path]
     rows = pd.concat(tables, axis=1)
+    rows = rows.loc[:, ~rows.columns.duplicated()]  # a stiffness that is drawn is not calibrated
     if last not in rows.index:
         raise InputError(str(files.design), f"sample {last}", f"expected samples 0 to {rows.index[-1]}")
     return rows.loc[first:last]

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.load_motion import load_motion, scaled
 from blockshake.dynamics.record_set import DrawnMotions
 from blockshake.errors import InputError
 from blockshake.files import content_digest
@@ -116,8 +116,14 @@ def measured_on_clock(named, base):
     return since(test, _loaded(base).attrs["start"]), campaign.sensors.marker_noise
 
 
+def as_sampled(motion, row):
+    """A motion turned by ``motion.heading`` [rad] and scaled by ``motion.scale`` [1] of a sample, where it has them."""
+    turned = motion.turned(float(row.get("motion.heading", 0.0)))
+    return scaled(turned, float(row.get("motion.scale", 1.0)), motion.name)
+
+
 def driving_motions(case, base, seed):
-    """Function that gives the `GroundMotion` of a sample by its number.
+    """Function that gives the `GroundMotion` of a sample by its number and, where they change it, its values.
 
     Parameters
     ----------
@@ -132,6 +138,12 @@ def driving_motions(case, base, seed):
     -----
     A draw depends on structure, motion, scale, seed and sample: it is the same for all models and in any order.
     """
+    motions = _motions(case, base, seed)
+    return lambda sample, row=None: motions(sample) if row is None else as_sampled(motions(sample), row)
+
+
+def _motions(case, base, seed):
+    """Function that gives the motion of a sample by its number, before the sample's values change it."""
     if case.get("intensity"):
         drawn = DrawnMotions.of(case)
         return lambda sample: drawn.motion(drawn.draw(sample, seed))

@@ -51,7 +51,7 @@ def climb_samples(runs, rows, ladder, store, seed=0):
     motions = driving_motions(runs.case | {"scale": 1.0, "input": COMMANDED}, None, seed)
     climbs = []
     for sample, row in rows.iterrows():
-        rungs = climb(structure, runs, motions(sample), runs.parameters(row, structure), ladder, store)
+        rungs = climb(structure, runs, motions(sample, row), runs.parameters(row, structure), ladder, store)
         climbs.append(rungs)
         store.say(f"{structure.file.name} {runs.model} sample {sample}: {_words(rungs)}")
     return gathered(

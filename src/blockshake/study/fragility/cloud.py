@@ -11,8 +11,10 @@ from blockshake.dynamics.record_set import DrawnMotions
 from blockshake.dynamics.system import FALLEN
 from blockshake.geometry.reference_block import half_width
 from blockshake.geometry.structure import load_structure
+from blockshake.quantities import MOTION
 from blockshake.statistics.intervals import CONFIDENCE
 from blockshake.store import load_made
+from blockshake.study.ensembles.case_input import as_sampled
 from blockshake.study.ensembles.ensemble import describe
 from blockshake.study.ensembles.envelope import BOUNDS, counted_samples
 from blockshake.study.fragility.capacity import estimate_capacity
@@ -195,8 +197,13 @@ def cloud_of_case(samples, case, seed, largest_drift):
     limit = largest_drift or half_width(load_structure(case["structure"]))
     drawn = DrawnMotions.of(case)
     records = [drawn.draw(sample, seed) for sample in counted["sample"].values]
-    motions = [drawn.motion(record) for record in records]
-    told = [case["scale"] * one.level if one.level else None for one in records]
+    values = counted["parameter_value"].to_pandas()
+    motions = [
+        as_sampled(drawn.motion(record), row)
+        for record, (_, row) in zip(records, values.iterrows(), strict=True)
+    ]
+    changed = any(name in MOTION for name in values)
+    told = [case["scale"] * one.level if one.level and not changed else None for one in records]
     intensity = np.array(
         [one or drawn.intensity.of(motion) for one, motion in zip(told, motions, strict=True)]
     )

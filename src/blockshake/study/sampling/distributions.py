@@ -10,20 +10,13 @@ from scipy.special import ndtr, ndtri
 
 from blockshake.errors import InputError, faults_of
 from blockshake.geometry.schema import EXTENSION
-from blockshake.quantities import PHYSICAL, unit_of
-from blockshake.simulation.models import CALIBRATED
+from blockshake.quantities import MOTION, unit_of, unit_of_number
+from blockshake.simulation.models import MODELS, part_parameters
 from blockshake.study.sampling.sample_table import load_design
 from blockshake.validation import Finite, Positive, Strict, validated
 
-_PROPERTIES = {
-    quantity.name.rsplit(".", 1)[1]: quantity.unit
-    for quantity in PHYSICAL
-    if quantity.name.startswith("materials.MATERIAL.")
-}
 _WORD = r"[^\s./]+"
-_NAME = re.compile(
-    rf"friction\.({_WORD})\.({_WORD})|materials\.{_WORD}\.(?:{'|'.join(_PROPERTIES)})|shapes\.{_WORD}\.hollow"
-)
+_OF_PAIR = re.compile(rf"(friction|joints)\.({_WORD})\.({_WORD})(.*)")
 _FINE = 64  # points of a stratum whose mean is taken
 
 
@@ -255,8 +248,8 @@ def known_as(name, names):
 
 def _identity(name):
     """The same for all names of one parameter."""
-    match = _NAME.fullmatch(str(name))
-    return tuple(sorted(match.group(1, 2))) if match and match.group(1) else name
+    match = _OF_PAIR.fullmatch(str(name))
+    return (match[1], *sorted(match.group(2, 3)), match[4]) if match else name
 
 
 TABLE_2 = {
@@ -287,9 +280,10 @@ def load_distributions(mapping, where):
     mapping : dict of str to dict, or None
         ``{name: {distribution: lognormal, mean: ..., cov: ...}}``, the keys of `Tabulated`, of `Discrete` (of an
         empirical one in place of ``values`` also ``file``, a CSV table, and ``column``, by default the variable's name)
-        or of `OfScipy`; names as ``friction.MATERIAL.MATERIAL``, ``materials.MATERIAL.PROPERTY``,
-        ``shapes.SHAPE.hollow`` or, of structures that state an extension, ``extension.NAME`` of any number. It replaces
-        Table 2 as a whole: what it does not name is not random. None means Table 2.
+        or of `OfScipy`; names are those of every number that ``--set`` takes, a part of a vector by its axis, such as
+        ``friction.MATERIAL.MATERIAL`` or ``bodies.BODY.mass_offset.x``, ``motion.scale`` and ``motion.heading``, and
+        of structures that state an extension ``extension.NAME``. It replaces Table 2 as a whole: what it does not name
+        is not random. None means Table 2.
     where : str
         File or option to name in an error.
 
@@ -313,8 +307,8 @@ def load_distributions(mapping, where):
             raise InputError(
                 where,
                 f"distributions.{name}",
-                "unknown parameter; expected friction.MATERIAL.MATERIAL, shapes.SHAPE.hollow, extension.NAME or "
-                f"materials.MATERIAL.PROPERTY with one of the properties {', '.join(_PROPERTIES)}",
+                "unknown parameter; expected motion.scale, motion.heading, extension.NAME or a number that "
+                "`blockshake parameters` lists, a part of a vector by its axis such as bodies.BODY.mass_offset.x",
             )
         if twin := known_as(name, variables):
             raise InputError(where, f"distributions.{name}", f"expected every pair once; it is {twin} too")
@@ -346,10 +340,18 @@ def _unit(name):
     """Unit of a parameter that may be random; None of no such one."""
     if name.startswith(EXTENSION):
         return unit_of(name.removeprefix(EXTENSION))
-    if not _NAME.fullmatch(name):
-        return None
-    kind, _, key = name.split(".")
-    return {"friction": "1", "shapes": "m"}.get(kind) or _PROPERTIES[key]
+    if part_parameters({name: 0.0})[1]:
+        return _unit_of_solver(name)
+    return MOTION.get(name) or unit_of_number(name)
+
+
+def _unit_of_solver(name):
+    """Unit of a solver's parameter that is a number and no count; None of another."""
+    for model in MODELS.values():
+        default, unit, *_ = model.numerical_parameters().get(name, ("", None))
+        if isinstance(default, float) or name in model.stiffness:
+            return unit
+    return None
 
 
 def parameter_unit(name):
@@ -362,11 +364,7 @@ def parameter_unit(name):
     """
     if unit := _unit(name):
         return unit
-    if name in CALIBRATED:
-        return "N/m3"
-    raise InputError(
-        "design", name, "expected a friction coefficient, a material's property, a hollow or a stiffness"
-    )
+    raise InputError("design", name, "expected a number of the structure, of the motion or of a solver")
 
 
 def draw_true_parameters(seed, means):

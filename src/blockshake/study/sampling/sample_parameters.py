@@ -2,7 +2,8 @@
 
 from blockshake.geometry.schema import EXTENSION
 from blockshake.geometry.structure_file import dotted_values
-from blockshake.simulation.models import solver_of
+from blockshake.quantities import MOTION
+from blockshake.simulation.models import part_parameters, solver_of
 
 
 def sample_parameters(row, structure, linked):
@@ -10,26 +11,37 @@ def sample_parameters(row, structure, linked):
 
     ``linked``: parameters that take another's sampled value. Parameters of a material, pair or box that the structure
     does not have are left out: configuration 1 has no steel, and only a structure that states an extension has
-    parameters ``extension.NAME``.
+    parameters ``extension.NAME``. Those of the motion are left out too: `as_sampled` takes them.
     """
-    values = {str(name): float(value) for name, value in row.items()}
+    values = {str(name): float(value) for name, value in row.items() if name not in MOTION}
     values |= {name: values[source] for name, source in linked.items() if source in values}
     return {name: value for name, value in values.items() if has_parameter(structure, name)}
 
 
+def structure_parameters(row, structure, linked):
+    """`sample_parameters` without those of a solver: what `Structure.with_parameters` takes."""
+    return part_parameters(sample_parameters(row, structure, linked))[0]
+
+
 def has_parameter(structure, name):
-    """Whether a structure has the material, the pair or the box that a parameter describes, by its dotted name."""
+    """Whether a structure has the material, the pair, the body or the box that a parameter describes, by dotted name.
+
+    Every structure has the parameters of a solver and of the motion.
+    """
+    if name in MOTION or part_parameters({name: 0.0})[1]:
+        return True
     file, (kind, *parts) = structure.file, name.split(".")
-    if name.startswith(EXTENSION):
-        stated = dotted_values(file.model_dump(mode="json")) if file.extension else {}
-        return name.removeprefix(EXTENSION) in stated
     if kind == "materials":
         return parts[0] in file.materials
     if kind == "friction":
-        return any(sorted(entry.pair) == sorted(parts) for entry in file.friction)
-    if kind == "shapes":
-        return parts[0] in file.shapes and file.shapes[parts[0]].box is not None
-    return True
+        return any(sorted(entry.pair) == sorted(parts[:2]) for entry in file.friction)
+    if kind == "joints":
+        return set(parts[:2]) <= set(structure.body_names)
+    if kind == "shapes" and (parts[0] not in file.shapes or file.shapes[parts[0]].box is None):
+        return False
+    if name.startswith(EXTENSION) and not file.extension:
+        return False
+    return name.removeprefix(EXTENSION) in dotted_values(file.model_dump(mode="json"))
 
 
 def own_value(structure, name):
@@ -46,5 +58,12 @@ def unused_variables(variables, model, parameters):
 
     Dotted names. ``parameters``: what a sample gives to the structure, from `sample_parameters`, without what it lacks.
     """
-    unused = solver_of(model).without_effect
-    return [name for name in variables if name not in parameters or name.rsplit(".", 1)[1] in unused]
+    solver = solver_of(model)
+
+    def is_used(name):
+        of_solver = bool(part_parameters({name: 0.0})[1])
+        if of_solver:
+            return name.startswith(f"{solver.prefix}.")
+        return name in MOTION or (name in parameters and name.split(".")[-1] not in solver.without_effect)
+
+    return [name for name in variables if not is_used(name)]

@@ -11,7 +11,7 @@ from blockshake.geometry.structure import StructureSource, load_structure
 from blockshake.simulation.models import model_of
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.store import structure_digest
-from blockshake.study.sampling.sample_parameters import sample_parameters
+from blockshake.study.sampling.sample_parameters import structure_parameters
 from blockshake.study.stiffness.tower import tower_of
 from blockshake.study.stiffness.wave_step import (
     AXES,
@@ -161,7 +161,7 @@ def calibrate_design(structure, design, linked, store):
     loaded = load_structure(structure)
     identity, rows = structure_digest(loaded), []
     for _, row in design.iterrows():
-        parameters = sample_parameters(row, loaded, linked)
+        parameters = structure_parameters(row, loaded, linked)
         calibrated = store.value(
             ("stiffness", identity, parameters),
             lambda _, given=parameters: calibrate_stiffness(loaded, given),
