@@ -8,6 +8,7 @@ import os
 import re
 import shutil
 import tempfile
+from datetime import datetime
 from pathlib import Path
 
 import yaml
@@ -27,6 +28,7 @@ _DEEPEST, _MOST_VALUES = 50, 200_000
 _NO_NUMBER = -(2**31)  # stands for NaN in packed variables
 _FULL = (errno.ENOSPC, errno.EDQUOT)
 _FURTHER = 2**16  # bytes, more than a file system keeps in hand for a file's end
+_SKEW = 2.0  # s that clocks of a network may differ by
 _MERGE = "tag:yaml.org,2002:merge"
 _TRUTH, _TEXT = "tag:yaml.org,2002:bool", "tag:yaml.org,2002:str"
 
@@ -243,6 +245,20 @@ def shipped(kind, name):
 def shipped_names(kind):
     """Names of the files of one kind that ship with the program, sorted."""
     return sorted(path.stem for path in (HOME / "config" / kind).glob("*.yaml"))
+
+
+def check_past(path):
+    """Refuse a file whose time lies ahead of the clock: the workflow would take it for newer than every result of it.
+
+    Raises
+    ------
+    InputError
+        Names the file and its time, and says how to set it.
+    """
+    time = os.stat(path).st_mtime
+    if time > datetime.now().timestamp() + _SKEW:
+        found = datetime.fromtimestamp(time).isoformat(" ", "seconds")
+        raise InputError(path, "", f"expected a file from before now, found the time {found}; `touch` sets it to now")
 
 
 def check_output(path):

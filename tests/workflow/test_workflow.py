@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 
 import pytest
 import yaml
@@ -113,6 +114,30 @@ def test_bad_configuration_ends_in_one_line_and_exit_2(tmp_path):
     assert "config/small.yaml: frequency: unknown key" in said[0]
     assert "Traceback" not in answer.stderr
     assert not (tmp_path / "results").exists()
+
+
+def test_an_input_of_the_future_is_named_before_the_first_job(tmp_path):
+    """Snakemake takes away what is older than its inputs, and never says so to `blockshake study`."""
+    checkout, name = Checkout(tmp_path), "motions/basso-tirreno.yaml"
+    ahead = time.time() + 3600.0
+    os.utime(tmp_path / "config" / name, (ahead, ahead))
+    answer = checkout.snakemake("configuration-1")
+    assert answer.returncode == 2
+    (line,) = [text for text in answer.stderr.splitlines() if text.startswith("blockshake:")]
+    assert f"{name}: expected a file from before now, found the time " in line
+    assert "`touch` sets it to now" in line
+    assert not (tmp_path / "results" / "small").exists()
+
+
+@pytest.mark.parametrize(
+    ("typed", "names"), [("campaign='2024_11'", ["2024_11"]), ("campaigns=[007, 1e3]", ["007", "1e3"])]
+)
+def test_campaigns_may_have_names_of_digits(typed, names, tmp_path):
+    checkout = Checkout(tmp_path)
+    for name in names:
+        shutil.copytree(ROOT / "data" / "virtual-campaign" / "configuration-1", tmp_path / name)
+    answer = checkout.snakemake("-n", "diagnose", "--config", typed, "effort=quick")
+    assert answer.returncode == 0, answer.stderr  # another name would be no folder
 
 
 def test_a_study_is_read_as_every_other_file(tmp_path):

@@ -3,7 +3,7 @@
 from functools import cache
 
 from blockshake.dynamics.record_set import record_files
-from blockshake.files import content_digest
+from blockshake.files import check_past, content_digest
 from blockshake.study.ensembles.batch import HALF_STEP
 
 
@@ -41,6 +41,14 @@ def _paths(named):
 def _yaml_digest(path):
     with refusing():
         return content_digest(load_yaml(path))
+
+
+def refuse_future():
+    """End where an input has a time ahead of the clock: Snakemake refuses every result that is older than its inputs."""
+    with refusing():
+        for path in {str(path) for job in workflow.dag.jobs for path in job.input}:
+            if os.path.exists(path):
+                check_past(path)
 
 
 @cache

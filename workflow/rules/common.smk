@@ -126,6 +126,7 @@ FAILURES = Failures()
 
 
 onstart:
+    refuse_future()
     hold_folder()
     # the user may ask to go on, and a cluster may start killed jobs again
     settings = workflow.execution_settings

@@ -16,16 +16,23 @@ def by_name(folders, without):
     return named
 
 
+def given_campaigns():
+    """Folders of campaigns: those of the command line as typed, else those of the configuration.
+
+    Snakemake makes a number of a folder named by digits, and 202411 of 2024_11.
+    """
+    settings = workflow.config_settings
+    typed = dict(entry.split("=", 1) for entry in settings.config_args or ())
+    if "campaign" in config:
+        folder = settings.config.get("campaign", config["campaign"])
+        return [folder if isinstance(folder, str) else typed["campaign"].strip("'\"")]
+    folders = settings.config.get("campaigns", config["diagnosis"]["campaigns"])
+    return folders if isinstance(folders, (list, tuple)) else [folders]
+
+
 EFFORT = config.get("effort", config["diagnosis"]["effort"])
 WITHOUT = config.get("without", [])
-CAMPAIGNS = by_name(
-    (
-        [config["campaign"]]
-        if "campaign" in config
-        else config.get("campaigns", config["diagnosis"]["campaigns"])
-    ),
-    WITHOUT,
-)
+CAMPAIGNS = by_name(given_campaigns(), WITHOUT)
 # models that the null hypothesis of a diagnosis holds
 NULL_MODELS = [name for name, model in SOLVERS.items() if model.perturbation]
 # how often the procedure was right

@@ -10,10 +10,10 @@ from blockshake.dynamics.baseline import AUTO
 from blockshake.dynamics.intensity import strong_until
 from blockshake.dynamics.load_motion import load_motion, provenance
 from blockshake.dynamics.motion import GroundMotion
-from blockshake.dynamics.record_set import DrawnMotions, is_record_set, read_records
+from blockshake.dynamics.record_set import DrawnMotions, is_record_set, read_records, record_files
 from blockshake.dynamics.synthetic_motion import SyntheticMotion
 from blockshake.errors import InputError, faults_of
-from blockshake.files import AnyPath, load_yaml, shipped_names
+from blockshake.files import AnyPath, check_past, load_yaml, named_file, shipped_names
 from blockshake.forces.seen.sight import sight_lines
 from blockshake.geometry.schema import StructureFile
 from blockshake.geometry.structure import Structure, load_structure
@@ -111,6 +111,9 @@ def _virtual_line(source):
 
 def _study_line(source):
     config = load_config(source)
+    for case in config.cases:
+        for path in (named_file("structures", case.structure), *record_files(case.motion)):
+            check_past(path)
     _read_measured(config, source)
     models = []
     for model in config.models:
