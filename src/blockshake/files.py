@@ -258,7 +258,9 @@ def check_past(path):
     time = os.stat(path).st_mtime
     if time > datetime.now().timestamp() + _SKEW:
         found = datetime.fromtimestamp(time).isoformat(" ", "seconds")
-        raise InputError(path, "", f"expected a file from before now, found the time {found}; `touch` sets it to now")
+        raise InputError(
+            path, "", f"expected a file from before now, found the time {found}; `touch` sets it to now"
+        )
 
 
 def check_output(path):
