@@ -9,6 +9,7 @@ from pathlib import Path
 
 import case_plan
 import make_case
+import mujoco_case
 import numpy as np
 import outside_forces
 import own_laboratory
@@ -16,7 +17,15 @@ import pytest
 import xarray as xr
 from case_files import CALIBRATION_SEEDS, OPEN_SEEDS, SEEDS, load_plan
 from case_noise import ACCELEROMETER_NOISE, MARKER_NOISE, add_noise, true_noise
-from case_truth import SIZES, follow, true_causes, true_numerics, true_parameters, true_table
+from case_truth import (
+    SIZES,
+    follow,
+    true_causes,
+    true_numerics,
+    true_parameters,
+    true_table,
+    unusual_numerics,
+)
 from effect_forms import FORM_NUMERICS, FORMS, distort
 from make_case import structure_file
 from outside_forces import OUTSIDE
@@ -69,6 +78,27 @@ def test_the_same_seed_gives_the_same_bytes(short, tmp_path):
     )
     committed = hashlib.sha256(files[0]["truth/truth.json"]).hexdigest()
     assert committed in files[0]["campaign/README"].decode()
+
+
+@pytest.mark.skipif(not mujoco_case.is_there(), reason="there is no mujoco: `make peers` sets it up")
+def test_mujocos_laboratory_gives_the_same_bytes(monkeypatch, tmp_path):
+    """And a push moves nothing beside a twin without it before it starts."""
+    monkeypatch.setattr(case_plan, "STRONG_PLAN", (("alkion", 1.0, "fit"), ("basso-tirreno", 1.0, "fit")))
+    monkeypatch.setattr(mujoco_case, "DURATION", 1.5)
+    for again in ("one", "two"):
+        make_case.make_case(
+            7, ("outside-push",), None, tmp_path / again / "campaign", tmp_path / again / "truth", False,
+            laboratory="mujoco", strength="middle",
+        )  # fmt: skip
+    one, two = (
+        {path.name: path.read_bytes() for path in (tmp_path / again).rglob("*") if path.is_file()}
+        for again in ("one", "two")
+    )
+    assert one == two
+    check(tmp_path / "one" / "campaign")
+    truth = _truth(tmp_path / "one")
+    assert min(truth["causes"][0]["start"]) > 1.5
+    assert truth["moved"] < 0.01
 
 
 CLASSES = [(), *((name,) for name in (*EFFECTS, *OUTSIDE)), ("reduced-bearing", "outside-blow")]
@@ -194,18 +224,24 @@ def test_a_third_of_the_cases_is_by_ls_dem_and_no_two_tests_have_one_name():
         assert len({case_plan.name_of_test(motion, scale) for motion, scale, _ in tests}) == 5
 
 
-def test_the_discretisation_is_outside_what_the_nominal_model_draws():
+def _unusual(seed):
+    model, time_step, numerics, more = unusual_numerics(load_structure(STRUCTURE), seed)
+    return model, time_step, numerics | more
+
+
+@pytest.mark.parametrize("numerics_of", [true_numerics, _unusual])
+def test_the_discretisation_is_outside_what_the_nominal_model_draws(numerics_of):
     drawn = {
         model: [draw_nominal(load_structure(STRUCTURE), model, number) for number in range(60)]
         for model in MODELS
     }
     used = set()
     for seed in range(60):
-        model, time_step, numerics = true_numerics(seed)
+        model, time_step, numerics = numerics_of(seed)
         used.add(model)
         assert time_step not in {draw.time_step for draw in drawn[model]}
         for name, value in numerics.items():
-            usual = [draw.parameters[name] for draw in drawn[model]]
+            usual = [draw.parameters.get(name, 0.0) for draw in drawn[model]]
             assert not min(usual) <= value <= max(usual)
     assert used == set(MODELS)
 
