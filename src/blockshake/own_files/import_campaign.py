@@ -21,6 +21,7 @@ from blockshake.measurement.campaigns.campaign_folder import (
 )
 from blockshake.measurement.campaigns.clocks import missing_rows
 from blockshake.measurement.campaigns.faulty_readings import stuck
+from blockshake.measurement.campaigns.lost_markers import lost_words
 from blockshake.measurement.campaigns.recorded_test import checked_test
 from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.measurement.poses.pose_file import ANGLE, QUATERNION, free_body, poses_of_columns
@@ -84,7 +85,7 @@ def _fill(asked, folder, where):
             readings = checked_test(readings, structure, test.file)
         title = f"measured test {test.name}"
         sources = ", ".join(Path(one).name for one in (test.file, test.accelerometers) if one)
-        readings.attrs = {"Conventions": "CF-1.11", "title": title, "source": Path(test.file).name,
+        readings.attrs |= {"Conventions": "CF-1.11", "title": title, "source": Path(test.file).name,
                           "history": history(None, f"import-campaign: {sources}")}  # fmt: skip
         write_dataset(folder / f"{name}.nc", readings)
         motion = motion_in_folder(test.motion, folder)
@@ -127,7 +128,7 @@ def _read_readings(test, asked, structure, where):
     source = test.accelerometers or test.file
     for names in ([*markers, *posed], [*channels, *transducers]) if source != test.file else (asked.columns,):
         _check_once(names, asked, where)
-    time, read = _displacements(test.file, markers, asked, where) if markers else (None, {})
+    time, read, lost = _displacements(test.file, markers, asked, where) if markers else (None, {}, "")
     for body in dict.fromkeys(key.rpartition(".")[0] for key in posed):
         time, filmed = _markers_of_poses(test.file, body, posed, asked, structure, where)
         for name in filmed.keys() & read.keys():
@@ -155,13 +156,18 @@ def _read_readings(test, asked, structure, where):
             variables[variable] = (("time_acc", dimension), read[:, known], {"units": unit})
             coordinates["time_acc"] = ("time_acc", time_acc, {"units": "s"})
             coordinates[dimension] = np.array(sensors)[known]
-    return xr.Dataset(variables, coordinates)
+    return xr.Dataset(variables, coordinates, {"lost_markers": lost} if lost else {})
 
 
 def _displacements(source, keys, asked, where):
-    """Times, and displacements (n_times, 3) [m] by marker, from its own columns; NaN along axes without a column."""
+    """Times, displacements (n_times, 3) [m] by marker, from its own columns, and a line on each marker that was lost.
+
+    Displacements are NaN along axes without a column, and where a marker was lost.
+    """
     time, readings = _columns_of(source, keys, asked, "displacement", where)
-    found = {}
+    zeros, found = _zeros_of_lost(keys, readings), {}
+    readings[zeros] = np.nan
+    lost = {key.rpartition(".")[0]: rows for key, rows in zip(keys, zeros.T, strict=True) if rows.any()}
     for key, column in zip(keys, readings.T, strict=True):
         name, _, axis = key.rpartition(".")
         if axis not in AXES or not name:
@@ -169,7 +175,31 @@ def _displacements(source, keys, asked, where):
             raise InputError(where, f"columns.{key}", f"expected {known}")
         values = found.setdefault(name, np.full((len(time), len(AXES)), np.nan))
         values[:, AXES.index(axis)] = column - _rest(time, column, asked, where, f"{source}: {key}")
-    return time, found
+    return (
+        time,
+        found,
+        "\n".join(f"{name}: {lost_words(rows, time - time[0])}" for name, rows in lost.items()),
+    )
+
+
+def _zeros_of_lost(keys, readings):
+    """Readings (n_times, n_keys), a mask, of markers all of whose coordinates are exactly 0 while they stand elsewhere.
+
+    Exports write a lost marker so. A displacement that begins at 0 is as near to 0 as to its next readings.
+    """
+    lost, names = np.zeros(readings.shape, dtype=bool), np.array([key.rpartition(".")[0] for key in keys])
+    for name in dict.fromkeys(names):
+        own = readings[:, names == name]
+        zero = (own == 0.0).all(axis=1)
+        if own.shape[1] < len(AXES) or zero.all() or not zero.any():
+            continue
+        known = own[~zero & np.isfinite(own).all(axis=1)]
+        nearest, step = (
+            np.linalg.norm(known, axis=1).min(),
+            np.linalg.norm(np.diff(known, axis=0), axis=1).max(),
+        )
+        lost[np.ix_(zero, names == name)] = nearest > 3.0 * step
+    return lost
 
 
 def _is_pose(key, structure):

@@ -29,9 +29,9 @@ _INSTRUMENTS = (
 class Faulty(NamedTuple):
     """Readings of a column that were made gaps.
 
-    ``sensor``: marker, channel or transducer; ``column``: its name, with an axis; ``kind``: ``constant``, ``frozen``,
-    ``clipped`` or ``doubled``; ``value`` that they have [m or m/s2]; ``p``: chance of a sound column like it;
-    ``words``: what they do.
+    ``sensor``: marker, channel or transducer; ``column``: its name, with an axis unless all axes are gaps; ``kind``:
+    ``constant``, ``frozen``, ``clipped``, ``doubled`` or ``lost``; ``value`` that they have [m or m/s2]; ``p``: chance
+    of a sound column like it; ``words``: what they do.
     """
 
     sensor: str
@@ -88,7 +88,7 @@ def without_faulty(test, structure):
     axis; where these do not change either, against all others of its instrument, if those have noise. In a test without
     noise equal and constant columns may be true, of a slab that does not rise or of blocks at rest.
     """
-    faulty = []
+    faulty = list(test.attrs.get("faulty", ()))
     for readings, unit, columns, values in instruments(test):
         values, (clock, dimension, *_) = values.copy(), readings.dims
         names = [str(name) for name in readings[dimension].values]

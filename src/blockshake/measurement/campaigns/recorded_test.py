@@ -8,6 +8,7 @@ from blockshake.errors import InputError
 from blockshake.geometry.schema import AXES
 from blockshake.measurement.campaigns.clocks import from_first_reading, missing_rows
 from blockshake.measurement.campaigns.faulty_readings import faulty_lines, instruments, stuck, without_faulty
+from blockshake.measurement.campaigns.lost_markers import without_lost
 from blockshake.measurement.campaigns.reading_files import SURVEY, read_netcdf, read_tables, read_variables
 from blockshake.measurement.campaigns.starting_places import standing, with_starting_places
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
@@ -67,7 +68,7 @@ def read_test(path, structure):
     path = Path(path)
     table = path.suffix.lower() == ".csv"
     test = read_tables(path, transducer_names(structure)) if table else read_netcdf(path)
-    test = without_faulty(checked_test(test, structure, path), structure)
+    test = without_faulty(without_lost(checked_test(test, structure, path), structure), structure)
     _check_driven(test, structure, path)  # whose readings may have been faulty
     return from_first_reading(with_starting_places(test, structure, path))
 
