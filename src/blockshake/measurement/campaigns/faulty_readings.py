@@ -7,7 +7,7 @@ import numpy as np
 from blockshake.measurement.sensors.accelerometers import channel_carriers
 from blockshake.measurement.sensors.markers import marker_bodies
 
-_LEVEL = 1e-3  # chance of any such column in a test of sound sensors
+LEVEL = 1e-3  # chance of any such column in a test of sound sensors
 _SHORTEST = 10  # steps without a change, below which nothing is called frozen
 # chance that a sound reading repeats the one before: a motion turns, and digits are few
 _LEAST_REPEATED = 0.1
@@ -160,7 +160,7 @@ def _faults(values, groups, nothing):
         moving = np.where(hung & noisy, 1.0, moving)  # where the whole instrument hangs, its noise says so
         repeats = known[:, column] & ~changed[:, column]
         if varying[column]:
-            at_end, p = _at_end(values[:, column], 0.5 * _LEVEL / len(groups))
+            at_end, p = _at_end(values[:, column], 0.5 * LEVEL / len(groups))
             touched = at_end[1:] | at_end[:-1]
             if at_end.any() and (noisy or moving[touched].mean() > 0.5):
                 faults.append(_Fault("clipped", column, at_end, p))
@@ -171,7 +171,7 @@ def _faults(values, groups, nothing):
                 faults.append(_Fault("doubled", original, every, 0.0))
                 faults.append(_Fault("doubled", column, every, 0.0))
                 continue
-        rows, p = _frozen(repeats, known[:, column], moving, _LEVEL / len(groups))
+        rows, p = _frozen(repeats, known[:, column], moving, LEVEL / len(groups))
         if rows.any():
             faults.append(_Fault("frozen" if varying[column] else "constant", column, rows, p))
     return faults

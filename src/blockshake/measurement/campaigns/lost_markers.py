@@ -6,15 +6,13 @@ before; what is not in the chain is lost.
 
 import numpy as np
 
-from blockshake.measurement.campaigns.faulty_readings import Faulty
+from blockshake.measurement.campaigns.faulty_readings import LEVEL, Faulty
 
-_GRAVITY = 9.81  # m/s2
 _LOWEST = 1.0  # m; blocks are taken to fall at least so far
 _TIP = 1.5  # corner of a column that topples over its mass centre in free fall; sqrt(3/2) of a slender one
 _TABLE = 2.0  # m/s, of a table
 _NOISE = 0.02  # m, of two readings
 _LONGEST = 9  # equal readings on end; longer stretches are looked at column by column
-_LEVEL = 1e-3  # chance of any such stretch in a test of sound sensors
 _LEAST_REPEATED = 1e-3  # chance that all coordinates of a sound marker repeat at once
 _CHANGING = 0.9  # share of the other markers' readings that change meanwhile
 _SPELT = 3  # times of a marker that a line spells out
@@ -57,7 +55,7 @@ def _fastest(structure):
         for body in range(len(structure.mass))
     ]
     height = max(max(tops) - structure.centroid[int(np.argmax(structure.driven)), 2], _LOWEST)
-    return _TABLE + _TIP * np.sqrt(2.0 * _GRAVITY * height)
+    return _TABLE + _TIP * np.sqrt(2.0 * np.linalg.norm(structure.file.gravity) * height)
 
 
 def _off_the_chain(places, known, time, speed):
@@ -110,7 +108,7 @@ def _frozen(values):
             if not 2 < length < _LONGEST or moving[begin:end].min() < _CHANGING:
                 continue
             elsewhere = (repeats[:, column].sum() - length + 1.0) / (total - length + 2.0)
-            if total * max(elsewhere, _LEAST_REPEATED) ** length < _LEVEL / known.shape[1]:
+            if total * max(elsewhere, _LEAST_REPEATED) ** length < LEVEL / known.shape[1]:
                 frozen[begin + 1 : end + 1, column] = True
     return frozen
 
