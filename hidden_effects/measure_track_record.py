@@ -17,6 +17,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from types import SimpleNamespace
 
+import mujoco_case
 import score
 from answer_file import load_answer
 from case_files import ROOT, SEEDS, campaign_of, load_plan, truth_of, verdict_of
@@ -182,6 +183,10 @@ def main(arguments):
     parser.add_argument("--cores", type=int, default=os.cpu_count())
     asked = parser.parse_args(arguments)
     plan = load_plan(asked.seeds).chosen(asked.share, asked.laboratory)
+    if any(case.laboratory == "mujoco" for case in plan.cases) and not mujoco_case.is_there():
+        parser.error(
+            "no mujoco in the environment of the peers: `make peers` sets it up; or --laboratory home"
+        )
     log = Log(asked.output / "log.jsonl")
     log("started", cores=asked.cores, seeds=plan.digest, part=plan.part, cases=len(plan.cases))
     make_cases(plan.cases, asked.output, asked.cores, log)

@@ -180,7 +180,7 @@ def _medians(known, outside, scored):
             f"gain on the rows of sealed tests {words}", _rows(cases), goals[0]
         )
         found[f"gain_{key}"] = _median(
-            f"gain on the responses before the horizon {words}", _responses(cases), goals[1]
+            f"gain of a proposed extension on the responses {words}", _responses(cases), goals[1]
         )
     return found | {
         "gain_over_oracle": _median(
@@ -217,7 +217,9 @@ def _rows(cases):
 
 
 def _responses(cases):
-    return [case.verdict.gain.recalibrated.estimate for case in cases if case.verdict.gain is not None]
+    return [
+        case.gains.found.estimate for case in cases if case.gains is not None and case.gains.found is not None
+    ]
 
 
 def _gained(case):

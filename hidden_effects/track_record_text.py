@@ -109,8 +109,8 @@ def _cell(share):
 
 def _intervals(record):
     """Lines of a table: intervals of the figures with a goal, home and abroad."""
-    home = next(iter(record.laboratories.values()))
-    yield "| figure | first laboratory, 95 % interval | abroad, 95 % interval | all, 95 % interval |"
+    first, home = next(iter(record.laboratories.items()))
+    yield f"| figure, 95 % interval | {first} | abroad | all |"
     yield "|---|---|---|---|"
     for name, share in record.shares.items():
         if share.goal is not None:

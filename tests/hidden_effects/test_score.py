@@ -50,6 +50,7 @@ BAD = {
     "gain_harmful",
 }  # fmt: skip
 BODY, OTHER = "block-1", "block-2"
+GAIN = {"estimate": 0.5, "lower": 0.4, "upper": 0.6}
 
 
 def _truth(case):
@@ -325,7 +326,15 @@ def test_a_description_is_on_time_in_the_test_that_was_struck(test, at, hits):
 
 def test_intervals_of_medians_are_order_statistics():
     """Of 6 values the least and largest hold the median in 1 - 2 / 64 = 0.969; of 5 nothing does in 0.95."""
-    gained = [_case(_verdict("named", ["eccentricity"], gain=_gain(number / 10))) for number in range(6)]
+    gained = [
+        replace(
+            _case(_verdict("named", ["eccentricity"])),
+            gains=ResponseGains(
+                proposed=True, found={"estimate": n / 10, "lower": -1.0, "upper": 1.0}, oracle=GAIN
+            ),
+        )
+        for n in range(6)
+    ]
     six = figures(gained)["medians"]["gain_named"]
     assert (six.lower, six.estimate, six.upper) == (0.0, 0.25, 0.5)
     assert figures(gained[:5])["medians"]["gain_named"].lower is None
@@ -444,9 +453,6 @@ def test_an_answer_that_contradicts_itself_is_one_line(tmp_path):
     write_json(tmp_path / "verdict.json", {"decision": "named"})
     with pytest.raises(InputError, match="expected one cause for 'named'"):
         load_answer(tmp_path / "verdict.json")
-
-
-GAIN = {"estimate": 0.5, "lower": 0.4, "upper": 0.6}
 
 
 @pytest.mark.parametrize(
