@@ -21,6 +21,7 @@ include: "workflow/rules/simulation.smk"
 include: "workflow/rules/envelope.smk"
 include: "workflow/rules/calibration.smk"
 include: "workflow/rules/fragility.smk"
+include: "workflow/rules/limit_states.smk"
 include: "workflow/rules/extension.smk"
 include: "workflow/rules/diagnosed.smk"
 include: "workflow/rules/diagnosis.smk"
@@ -32,6 +33,7 @@ rule all:
     input:
         f"reports/{STUDY}.html",
         f"reports/{STUDY}.pdf",
+        f"results/{STUDY}/responses.csv",
         expand(
             "reports/diagnosis-{campaign}.{kind}",
             campaign=CAMPAIGNS,

@@ -60,7 +60,8 @@ PHYSICAL = (
     Quantity("external_forces.INDEX.damping", "N s/m", "of a viscous drag from outside", "structure file"),
     Quantity("external_forces.INDEX.drag", "N", "of a dry drag from outside", "structure file"),
 )  # fmt: skip
-MOTION = {"motion.scale": "1", "motion.heading": "rad"}
+FACTOR, HEADING = "motion.scale", "motion.heading"
+MOTION = {FACTOR: "1", HEADING: "rad"}
 """Units of what a sample may change of the motion that drives it: a factor, and a turn about z."""
 _OF_VECTOR = r"(\.[xyz])?$"
 _VECTORS = ("gravity", "mass_offset", "position", "offset", "velocity", "angular_velocity", "box")

@@ -21,6 +21,7 @@ from blockshake.measurement.campaigns.campaign import CampaignFile
 from blockshake.own_files.check import check
 from blockshake.own_files.import_map import ImportMap
 from blockshake.study.config import StudyConfig, load_config
+from blockshake.study.limit_states.settings import LimitState
 from blockshake.study.sampling.latin_hypercube import draw_design
 from blockshake.virtual.settings import VirtualCampaign, load_settings
 
@@ -38,6 +39,9 @@ ELSEWHERE = (
     "ensemble.distributions.*.probabilities",
     "ensemble.distributions.*.loc",
     "ensemble.distributions.*.scale",
+    *(f"limits.*.{key}" for key in LimitState.model_fields),
+    "limits.*.joint.*",
+    "limits.*.cases.*",
     "extension",
     "extension.cases",
     "extension.named_by",

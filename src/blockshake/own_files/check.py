@@ -4,6 +4,8 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
+
 from blockshake.diagnosis.nominal.plan import plan_diagnosis
 from blockshake.diagnosis.nominal.planned_test import planned_motion
 from blockshake.dynamics.baseline import AUTO
@@ -157,7 +159,7 @@ def _study_remarks(config, motions):
             yield f"{name}: no variable of ensemble.distributions is the structure's: all of its samples are alike"
         yield from (f"{name}: {remark}" for remark in structure_remarks(structure))
     for name, variable in config.ensemble.distributions.items():
-        if variable.cov > _WIDEST:
+        if _WIDEST < variable.cov < np.inf:
             yield f"{name} has a cov of {variable.cov:g}: expected a share, 0.1 for 10 %"
     if config.output_rate < _SLOWEST:
         yield f"{config.output_rate:g} rows a second miss the peaks of drifts and forces: 200 is usual"

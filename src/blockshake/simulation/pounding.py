@@ -23,7 +23,7 @@ def pounding(run, structure):
     left out. Neither a force nor an impulse is told: a run holds forces at its rows alone, and a blow is over before
     the next one.
     """
-    names, up = structure.body_names, np.array(structure.file.gravity)
+    names = structure.body_names
     pairs = np.array([[names.index(name) for name in run[side].values] for side in ("lower", "upper")], int).T
     apart = ~structure.touching[tuple(pairs.T)] & ~structure.driven[pairs].any(axis=1)
     seen = run.isel(time=run["position"].notnull().all(("body", "axis")).to_numpy())
@@ -31,15 +31,31 @@ def pounding(run, structure):
     motion = seen["position"].to_numpy(), rotation_matrices(seen["orientation"].to_numpy())
     blows, velocity, pair = 0, 0.0, ""
     for (a, b), normal in zip(pairs[apart], contact_normals(structure, pairs[apart]), strict=True):
-        if not abs(normal @ up) < COSINE_OF_TILT * np.linalg.norm(up):  # above each other, or not convex
+        gap = _gap(structure, *motion, a, b, normal)
+        if gap is None:
             continue
-        sides = (a, b, normal), (b, a, -normal)
-        gap = np.maximum(*(_distances(structure, *motion, *side) for side in sides))
-        found = _blows(gap, np.diff(seen["time"].to_numpy()))
+        found = blow_velocities(gap, np.diff(seen["time"].to_numpy()))
         blows += len(found)
         if max(found, default=0.0) > velocity:
             velocity, pair = float(max(found)), f"{names[a]} and {names[b]}"
     return blows, velocity, pair
+
+
+def gap_of_pair(structure, position, turns, a, b):
+    """Gap over time of two bodies that stand beside each other at the start, (n_times,) [m]; None of others.
+
+    ``position`` and ``turns``: (n_times, n_bodies, 3) [m] and (n_times, n_bodies, 3, 3), body to world.
+    """
+    (normal,) = contact_normals(structure, np.array([[a, b]]))
+    return _gap(structure, position, turns, a, b, normal)
+
+
+def _gap(structure, position, turns, a, b, normal):
+    up = np.array(structure.file.gravity)
+    if not abs(normal @ up) < COSINE_OF_TILT * np.linalg.norm(up):  # above each other, or not convex
+        return None
+    sides = (a, b, normal), (b, a, -normal)
+    return np.maximum(*(_distances(structure, position, turns, *side) for side in sides))
 
 
 def _distances(structure, position, turns, body, other, normal):
@@ -51,7 +67,7 @@ def _distances(structure, position, turns, body, other, normal):
     return nearest - (structure.solid(body).vertices @ outward).max()
 
 
-def _blows(gap, step):
+def blow_velocities(gap, step):
     """Velocities of the blows of a gap over time [m/s]; ``step`` (n_times - 1,) [s]."""
     closing = -np.diff(gap)[:-1] / step[:-1]  # up to every row but the first and the last
     now, following = gap[1:-1], gap[2:]

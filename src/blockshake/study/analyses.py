@@ -11,6 +11,7 @@ from blockshake.study.config_checks import (
     check_calibration,
     check_extension,
     check_fragility,
+    check_limits,
 )
 from blockshake.study.sampling.sample_table import load_design
 
@@ -36,6 +37,13 @@ def _cases_of_stiffness(study):
     calibrated = any(solver_of(model).calibrated for model in study["models"])
     named = calibrated or any(case["structure"] in OF_THE_PAPER for case in study["cases"])
     return _every_case(study) if named else []
+
+
+def _cases_of_limits(study):
+    """Cases that a limit state names, or all where one names none; a structure may lack its bodies."""
+    states = study["limits"].values()
+    named = {name for state in states for name in state["cases"]}
+    return [name for name in _every_case(study) if name in named or not all(one["cases"] for one in states)]
 
 
 class Analysis(NamedTuple):
@@ -90,6 +98,7 @@ ANALYSES = (
         "fragility", "fragility/{case}.nc", load_made, _cases_of("fragility"), "fragility", check_fragility
     ),
     Analysis("clouds", "clouds/{model}/{case}.nc", cases=_drawing_cases),
+    Analysis("limits", "limits/{model}/{case}.nc", load_made, _cases_of_limits, "limits", check_limits),
     Analysis("changes", "changes/{case}.nc", load_made, _cases_of("extension"), "extension", check_extension),
     Analysis("calibration", "calibration.json", load_json, None, "calibration", check_calibration),
 )

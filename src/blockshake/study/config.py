@@ -17,6 +17,7 @@ from blockshake.study.calibration.settings import CalibrationSettings
 from blockshake.study.config_checks import check_named
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED
 from blockshake.study.ensembles.rungs import Rungs
+from blockshake.study.limit_states.settings import LimitState
 from blockshake.study.sampling.distributions import (
     LINKED,
     TABLE_2,
@@ -248,6 +249,9 @@ class StudyConfig(Strict):
     ensemble: Ensemble
     ladder: Ladder = Ladder()
     fragility: FragilitySettings | None = Field(None, description="none: no sample climbs the ladder")
+    limits: dict[str, LimitState] = Field(
+        {}, description="limit states of yours by name, such as `statue tips: {body: statue, tilt: 5 deg}`"
+    )
     calibration: CalibrationSettings | None = Field(
         None, description="none: friction, restitution and contact stiffness are taken as they are"
     )

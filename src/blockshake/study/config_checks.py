@@ -329,6 +329,39 @@ def check_fragility(asked, config, structures, where):
         raise InputError(where, "fragility.size", f"expected at most ensemble.size, {config.ensemble.size}")
 
 
+def check_limits(asked, config, structures, where):
+    """Cases of the study, bodies and joints of their structures."""
+    for name, state in asked.items():
+        key = f"limits.{name}"
+        for case in state.cases:
+            _one_of(case, [one.name for one in config.cases], where, f"{key}.cases")
+        of = [structures[one.structure] for one in config.cases if not state.cases or one.name in state.cases]
+        told = [one for one in of if set(state.bodies) <= set(one.body_names)]
+        if not told or (state.cases and len(told) < len(of)):
+            lacking = next(one for one in of if one not in told)
+            for body in state.bodies:
+                _one_of(body, lacking.body_names, where, f"{key}.{'body' if state.body else 'joint'}")
+        for structure in told:
+            driven = [
+                name
+                for name, is_driven in zip(structure.body_names, structure.driven, strict=True)
+                if is_driven
+            ]
+            if state.body in driven:
+                raise InputError(
+                    where, f"{key}.body", f"expected a body that is not driven, not {state.body}"
+                )
+            if state.joint is not None:
+                pair = tuple(map(structure.body_names.index, state.joint))
+                if not structure.touching[pair] and (
+                    state.measure != "impact_velocity" or set(state.joint) & set(driven)
+                ):
+                    expected = "expected two bodies that touch at the start"
+                    raise InputError(
+                        where, f"{key}.joint", f"{expected}, which {' and '.join(state.joint)} do not"
+                    )
+
+
 def check_extension(asked, config, structures, where):
     """Pairs of cases that differ by the cause alone."""
     names = [case.name for case in config.cases]

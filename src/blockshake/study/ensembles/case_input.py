@@ -16,6 +16,7 @@ from blockshake.measurement.campaigns.commanded_motion import follow
 from blockshake.measurement.campaigns.starting_places import standing
 from blockshake.measurement.motion.measured_base import base_as_motion, draw_base, measure_base
 from blockshake.measurement.sensors.markers import driven_marker, unread_directions
+from blockshake.quantities import FACTOR, HEADING
 from blockshake.store import load_made
 
 MEASURED, COMMANDED = "measured", "commanded"
@@ -118,8 +119,8 @@ def measured_on_clock(named, base):
 
 def as_sampled(motion, row):
     """A motion turned by ``motion.heading`` [rad] and scaled by ``motion.scale`` [1] of a sample, where it has them."""
-    turned = motion.turned(float(row.get("motion.heading", 0.0)))
-    return scaled(turned, float(row.get("motion.scale", 1.0)), motion.name)
+    turned = motion.turned(float(row.get(HEADING, 0.0)))
+    return scaled(turned, float(row.get(FACTOR, 1.0)), motion.name)
 
 
 def driving_motions(case, base, seed):

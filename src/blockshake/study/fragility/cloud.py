@@ -3,18 +3,19 @@
 from typing import NamedTuple
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from scipy.special import expit, gammaincinv, ndtr, ndtri
 
 from blockshake.dynamics.intensity import motion_figures
-from blockshake.dynamics.record_set import DrawnMotions
+from blockshake.dynamics.load_motion import scaled
+from blockshake.dynamics.record_set import DrawnMotions, Intensity
 from blockshake.dynamics.system import FALLEN
 from blockshake.geometry.reference_block import half_width
 from blockshake.geometry.structure import load_structure
-from blockshake.quantities import MOTION
+from blockshake.quantities import FACTOR
 from blockshake.statistics.intervals import CONFIDENCE
 from blockshake.store import load_made
-from blockshake.study.ensembles.case_input import as_sampled
 from blockshake.study.ensembles.ensemble import describe
 from blockshake.study.ensembles.envelope import BOUNDS, counted_samples
 from blockshake.study.fragility.capacity import estimate_capacity
@@ -195,68 +196,97 @@ def cloud_of_case(samples, case, seed, largest_drift):
     """
     counted = counted_samples(load_made(samples))
     limit = largest_drift or half_width(load_structure(case["structure"]))
-    drawn = DrawnMotions.of(case)
-    records = [drawn.draw(sample, seed) for sample in counted["sample"].values]
-    values = counted["parameter_value"].to_pandas()
-    motions = [
-        as_sampled(drawn.motion(record), row)
-        for record, (_, row) in zip(records, values.iterrows(), strict=True)
-    ]
-    changed = any(name in MOTION for name in values)
-    told = [case["scale"] * one.level if one.level and not changed else None for one in records]
-    intensity = np.array(
-        [one or drawn.intensity.of(motion) for one, motion in zip(told, motions, strict=True)]
-    )
+    shaken = shaken_by(counted, case, seed)
     demand = counted["peak"].sel(frame="slab", drop=True).max("marker").to_numpy()
     fell = np.isin(counted["status"].values, FALLEN)
-    failed = fell | (demand > limit)
-    differ = len(np.unique(intensity)) > 1  # else no curve is told
-    fine = np.geomspace(intensity.min(), intensity.max(), POINTS) if differ else np.arange(1.0, POINTS + 1.0)
-    weight = len(set(records)) / len(records) if records else 1.0
-    cloud, likely = fit_cloud(intensity, demand, fell, limit, weight)
-    bounds = np.where(failed, 0.0, intensity), np.where(failed, intensity, np.inf)
-    fits = {
-        "regression": (cloud, likely, _tails),
-        "counts": estimate_capacity(*(bounds if differ else ([], [])), weight),
-    }
-    peaks = [motion_figures(motion)["peak_acceleration"] for motion in motions]
-    by_sample = {
-        "intensity": intensity,
-        "peak_acceleration": peaks,
-        "demand": demand,
-        "fell": fell.astype(int),
-    }
-    result = xr.Dataset(
-        {name: ("sample", values) for name, values in by_sample.items()},
-        {
-            "sample": counted["sample"],
-            "record": ("sample", [one.name for one in records], {"long_name": "motion of the sample"}),
-            "fit": list(fits),
-            "bound": list(BOUNDS),
-            "fine_intensity": fine,
-        },
-    )
-    for name, of in ESTIMATES.items():
-        dims = ("fine_intensity",) if name == "curve" else ()
-        values = [np.asarray(of(fitted, fine), dtype=float) for fitted, *_ in fits.values()]
-        limits = [limits_over(of(around, fine[:, None])) for _, around, limits_over in fits.values()]
-        result[name] = ("fit", *dims), np.stack(values)
-        result[f"{name}_interval"] = ("fit", "bound", *dims), np.stack(limits)
-    unit = "m/s" if drawn.intensity.measure == "pgv" else "m/s2"
+    result, cloud = fragilities(shaken, demand, fell, limit)
+    peaks = [motion_figures(motion)["peak_acceleration"] for motion in shaken.motions]
+    by_sample = {"intensity": shaken.intensity, "peak_acceleration": peaks, "demand": demand}
+    for name, values in (by_sample | {"fell": fell.astype(int)}).items():
+        result[name] = "sample", values
+    record = ("sample", [one.name for one in shaken.records], {"long_name": "motion of the sample"})
+    result = result.assign_coords(sample=counted["sample"], record=record)
+    unit = "m/s" if shaken.asked.measure == "pgv" else "m/s2"
     describe(result, {name: (words, _UNITS.get(name, unit)) for name, words in _DESCRIBED.items()})
     result.attrs = {
         "title": "fragility over the intensity of drawn motions",
-        "measure": drawn.intensity.measure,
-        "period": drawn.intensity.period or 0.0,
-        "levels": len(drawn.intensity.levels),
-        "records": len({one.name for one in records}),
-        "weight": weight,
+        "measure": shaken.asked.measure,
+        "period": shaken.asked.period or 0.0,
+        "levels": len(shaken.asked.levels),
+        "records": len({one.name for one in shaken.records}),
+        "weight": shaken.weight,
         "slope": float(cloud.slope),
         "intercept": float(cloud.intercept),
         "largest_drift": float(limit),
         "confidence": CONFIDENCE,
     }
     return result
+
+
+class Shaken(NamedTuple):
+    """Motions by which samples were shaken, in their order, before any heading turns them."""
+
+    asked: Intensity
+    records: list  # of SetRecord
+    motions: list  # of GroundMotion
+    intensity: np.ndarray  # float64 (n_samples,); in the unit of the measure
+
+    @property
+    def weight(self):
+        """Share of the samples that are independent [1]: those of the same record at the same level count as one."""
+        return len(set(self.records)) / len(self.records) if self.records else 1.0
+
+
+def shaken_by(samples, case, seed):
+    """`Shaken` of samples of `sample_figures` of a case, a mapping, that draws motions by the design's ``seed``."""
+    drawn, values = DrawnMotions.of(case), samples["parameter_value"].to_pandas()
+    records = [drawn.draw(sample, seed) for sample in samples["sample"].values]
+    factors = values.get(FACTOR, pd.Series(1.0, values.index)).to_numpy()
+    own = [drawn.motion(record) for record in records]
+    told = [case["scale"] * one.level if one.level else drawn.intensity.of(motion)
+            for one, motion in zip(records, own, strict=True)]  # fmt: skip
+    motions = [scaled(motion, factor, motion.name) for motion, factor in zip(own, factors, strict=True)]
+    return Shaken(drawn.intensity, records, motions, factors * np.array(told))
+
+
+def fragilities(shaken, demand, fell, limit):
+    """Both fragilities of samples over the intensity of their motions.
+
+    Parameters
+    ----------
+    shaken : Shaken
+    demand : float64 array, shape (n_samples,)
+        In the unit of ``limit``.
+    fell : bool array, shape (n_samples,)
+        Samples that do not pass whatever their demand.
+    limit : float
+        Demand that counts as not passing.
+
+    Returns
+    -------
+    result : xarray.Dataset
+        By ``fit`` the statistics of `cloud_of_case`.
+    cloud : Cloud
+        Of the regression.
+    """
+    intensity, weight = shaken.intensity, shaken.weight
+    failed = fell | (demand > limit)
+    differ = len(np.unique(intensity)) > 1  # else no curve is told
+    fine = np.geomspace(intensity.min(), intensity.max(), POINTS) if differ else np.arange(1.0, POINTS + 1.0)
+    cloud, likely = fit_cloud(intensity, demand, fell, limit, weight)
+    bounds = np.where(failed, 0.0, intensity), np.where(failed, intensity, np.inf)
+    fits = {
+        "regression": (cloud, likely, _tails),
+        "counts": estimate_capacity(*(bounds if differ else ([], [])), weight),
+    }
+    result = xr.Dataset(coords={"fit": list(fits), "bound": list(BOUNDS), "fine_intensity": fine})
+    for name, of in ESTIMATES.items():
+        dims = ("fine_intensity",) if name == "curve" else ()
+        values = [np.asarray(of(fitted, fine), dtype=float) for fitted, *_ in fits.values()]
+        limits = [limits_over(of(around, fine[:, None])) for _, around, limits_over in fits.values()]
+        result[name] = ("fit", *dims), np.stack(values)
+        result[f"{name}_interval"] = ("fit", "bound", *dims), np.stack(limits)
+    return result, cloud
 
 
 def _tails(values):

@@ -33,6 +33,7 @@ class Response:
     comparison: xr.Dataset | None
     sensitivity: xr.Dataset
     cloud: xr.Dataset | None = None
+    limits: xr.Dataset | None = None  # from `limit_states_of_case`, where the study has limit states
 
 
 @dataclass(frozen=True)
@@ -169,6 +170,7 @@ def _case(study, read, name, settings):
             comparison=read["comparisons"].get((name, model)),
             sensitivity=read["sensitivities"][name, model],
             cloud=read["clouds"].get((name, model)),
+            limits=read["limits"].get((name, model)),
         )
         for model in study["models"]
     }

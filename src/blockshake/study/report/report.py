@@ -6,6 +6,7 @@ from blockshake.study.calibration.section import calibration
 from blockshake.study.comparison.section import models
 from blockshake.study.extension.section import extension
 from blockshake.study.fragility.section import fragility
+from blockshake.study.limit_states.section import limit_states
 from blockshake.study.report.answer import answer
 from blockshake.study.report.closing_sections import limits, origin
 from blockshake.study.report.content import load_content
@@ -17,6 +18,7 @@ from blockshake.study.stiffness.section import stiffness
 
 _SECTIONS = (
     answer,
+    limit_states,
     figures,
     structures,
     motions,

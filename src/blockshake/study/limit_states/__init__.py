@@ -1,0 +1,1 @@
+"""Limit states of a user's own: their probabilities, and their fragilities over the intensity."""

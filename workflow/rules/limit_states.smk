@@ -1,0 +1,54 @@
+rule measure_limit_states:
+    """The study's own limit states: probability of each, and its fragility over the intensity of the motions."""
+    input:
+        unpack(case_files),
+        batches=batch_files,
+        base=lambda wildcards: (
+            f"results/{wildcards.study}/inputs/{wildcards.case}.nc"
+            if CASES[wildcards.case]["measured"]
+            else []
+        ),
+    output:
+        "results/{study}/limits/{model}/{case}.nc",
+    log:
+        "logs/{study}/measure_limit_states/{model}/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        case=case_definition,
+        linked=lookup(dpath="ensemble/linked", within=config),
+        limits=config["limits"],
+        seed=lookup(dpath="ensemble/seed", within=config),
+        yaml_contents=yaml_contents(case_files),
+        source=source_of("measure_limit_states"),
+    script:
+        "../scripts/measure_limit_states.py"
+
+
+rule write_responses:
+    """All answers in one table: a row a run, with its sampled values, its motion, its responses and how it ended."""
+    input:
+        samples=expand(
+            "results/{{study}}/samples/{model}/{case}.nc", model=MODELS, case=CASES
+        ),
+        limits=[
+            f"results/{{study}}/{file}"
+            for analysis in ANALYSES
+            if analysis.name == "limits"
+            for file in analysis.files(config).values()
+        ],
+        motions=[
+            file for motion in MOTIONS.values() for file in files_of_motion(motion)
+        ],
+    output:
+        "results/{study}/responses.csv",
+    log:
+        "logs/{study}/write_responses.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        study={key: config[key] for key in ("cases", "models", "limits", "ensemble")},
+        results="results/{study}",
+        source=source_of("write_responses"),
+    script:
+        "../scripts/write_responses.py"
