@@ -48,8 +48,8 @@ def test_sound_markers_have_no_gain(sound):
 
 
 @pytest.mark.parametrize("gain", [0.08, -0.05])
-@pytest.mark.parametrize("body", ["block-1", "block-2"])
-def test_a_gain_of_a_body_between_two_joints_is_found_and_taken_out(sound, body, gain):
+@pytest.mark.parametrize("body", ["block-1", "block-2", "block-3"])
+def test_a_gain_of_a_body_is_found_by_its_joints_and_taken_out(sound, body, gain):
     structure, tests = sound
     spoilt = gained(tests, body, gain)
     (found,) = body_gains(structure, spoilt, SENSORS, LEVEL)

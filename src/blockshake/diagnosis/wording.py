@@ -5,7 +5,7 @@ import numpy as np
 from blockshake.diagnosis.answer.history import EDGES, FRICTION, MIDDLE
 from blockshake.diagnosis.answer.places import EVERYWHERE
 from blockshake.diagnosis.outside.registry import FORMS
-from blockshake.effects.registry import EFFECTS, title_of
+from blockshake.effects.registry import EFFECTS
 from blockshake.pages.units import Printed, printed
 from blockshake.pages.wording import listed, number
 
@@ -16,8 +16,8 @@ _HIGH = 0.25  # of a body's height above its middle, from which on a force acts 
 
 
 def name_of(cause):
-    """A cause's name in words, effect of the registry or form from outside."""
-    return FORMS[cause].title if cause in FORMS else title_of(cause)
+    """A cause's name in words, effect of the registry or form from outside; of a body its own."""
+    return FORMS[cause].title if cause in FORMS else EFFECTS[cause].title if cause in EFFECTS else cause
 
 
 def shown_unit(unit):
@@ -108,7 +108,8 @@ def when_words(when):
         return f"at {listed(blows)}"
     if "start" in when:
         after = " and in the tests after it" if when["lasts"] else ""
-        return f"from {_seconds(when['start'])} of {when['test']} on{after}"
+        grows = ", each time that it bears," if when.get("crushed") else ""
+        return f"from {_seconds(when['start'])} of {when['test']} on{grows}{after}"
     return f"in {when['test']} alone" if "test" in when else ""
 
 

@@ -1,5 +1,7 @@
 """The mass centre of a block lies beside its middle."""
 
+import numpy as np
+
 from blockshake.effects.effect import Columns, Effect, EffectParameter
 from blockshake.effects.places import blocks
 from blockshake.forces.seen.wrench_histories import mass_centre_off
@@ -15,8 +17,14 @@ def _act(experiment, values, place):
 
 
 def _columns(seen, place):
-    body = seen.structure.body_names.index(place["body"])
-    return [Columns({}, seen.rows.along(mass_centre_off(seen, body))[:, None], (_SCALE,), False)]
+    """The mass centre at most the radius of gyration off: no mass within the shape has it further out."""
+    structure = seen.structure
+    body = structure.body_names.index(place["body"])
+    solid = structure.solids[structure.file.bodies[body].shape]
+    inertia = solid.properties.inertia / solid.properties.volume
+    reach = np.sqrt(0.5 * np.trace(inertia) - inertia[0, 0]) - abs(structure.mass_offset[body, 0])
+    rows = seen.rows.along(mass_centre_off(seen, body))
+    return [Columns({}, rows[:, None], (_SCALE,), False, float(reach))]
 
 
 EFFECT = Effect(

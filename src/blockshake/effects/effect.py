@@ -59,6 +59,7 @@ class Columns(NamedTuple):
     # amplitude
     scales: tuple | None
     positive: bool  # the first amplitude is not negative
+    most: float = np.inf  # magnitude of the size, beyond which no structure has it
 
 
 @dataclass(frozen=True)

@@ -15,20 +15,20 @@ _SMALLEST = 1e-5  # rad
 
 
 def _act(experiment, values, place):
-    structure = experiment.structure
-    file = structure.file
-    mass = {}
+    worn = _worn(experiment.structure)
+    return experiment.with_parameters(
+        **{f"shapes.{name}.chamfer": shape.chamfer + values["inset"] for name, shape in worn.items()}
+    )
+
+
+def _worn(structure):
+    """Shapes of blocks whose edges wear, by name: boxes of the material that weighs most."""
+    file, mass = structure.file, {}
     for body, kilograms, driven in zip(file.bodies, structure.mass, structure.driven, strict=True):
         mass[body.material] = mass.get(body.material, 0.0) + (0.0 if driven else kilograms)
     blocks = max(mass, key=mass.get)  # steel beams keep their edges
-    worn = sorted({body.shape for body in file.bodies if not body.driven and body.material == blocks})
-    return experiment.with_parameters(
-        **{
-            f"shapes.{name}.chamfer": file.shapes[name].chamfer + values["inset"]
-            for name in worn
-            if file.shapes[name].box is not None
-        }
-    )
+    names = sorted({body.shape for body in file.bodies if not body.driven and body.material == blocks})
+    return {name: file.shapes[name] for name in names if file.shapes[name].box is not None}
 
 
 def _columns(seen, place):
@@ -40,19 +40,20 @@ def _columns(seen, place):
     insets = [seen.rows.along(edge_inward(seen, face)) for face in faces]
     turns = [np.abs(seen.joints.rotation[seen.rows.instant, face]) for face in faces]
     plain = sum(insets)
+    # no block is narrower than its edges lie further in
+    most = min((0.5 * min(one.box) - one.chamfer for one in _worn(seen.structure).values()), default=np.inf)
     shares = [np.clip(turn / _ROLLED, 0.0, _MOST_ROLLED) for turn in turns]
     rolled = [
         sum(inset * share**power for inset, share in zip(insets, shares, strict=True)) for power in (1, 2)
     ]
     variants = [
-        Columns({"inset": "alike"}, plain[:, None], (_SCALE,), True),
-        Columns({"inset": "rolling"}, np.stack([plain, *rolled], axis=1), (_SCALE,) * 3, True),
+        Columns({"inset": "alike"}, plain[:, None], (_SCALE,), True, most),
+        Columns({"inset": "rolling"}, np.stack([plain, *rolled], axis=1), (_SCALE,) * 3, True, most),
     ]
     if place:
         shape = np.stack([plain, *(plain * ramp for ramp in _ramps(turns[0]))], axis=1)
-        variants.append(
-            Columns({"inset": "by rotation"}, shape, (_SCALE,) + (_STEP,) * (len(_KNOTS) - 1), True)
-        )
+        scales = (_SCALE,) + (_STEP,) * (len(_KNOTS) - 1)
+        variants.append(Columns({"inset": "by rotation"}, shape, scales, True, most))
     return variants
 
 

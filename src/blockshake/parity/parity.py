@@ -151,7 +151,8 @@ def check_parity(tests, structure, sensors, level=LEVEL):
         findings.extend(faults)
         return {name: corrected(test, name, structure, faults) for name, test in tests.items()}
 
-    tests = without(body_gains(structure, tests, sensors, share))
+    scaled = body_gains(structure, tests, sensors, share)
+    tests = without(scaled)
     tests = without(marker_exchanges(structure, tests, noise, share))
     bodies = bodies_with_markers(structure, tests)
     checks = {name: marker_faults.check_body(body, noise, share) for name, body in bodies.items()}
@@ -176,8 +177,16 @@ def check_parity(tests, structure, sensors, level=LEVEL):
         name: [pair for pair in of_test if pair.name not in exchanged] for name, of_test in pairs.items()
     }
     findings += clock_findings(clock, common, share) + exchanges
+    body_of = {marker.name: marker.body for marker in structure.file.markers}
+    unsure = {
+        f"{sensor.name}-{axis}": abs(finding.estimate[0])
+        for finding in scaled
+        for sensor in structure.file.accelerometers
+        for axis in sensor.axes
+        if sensor.body == body_of[finding.where[0]]
+    }
     findings += gain_findings(
-        {name: gain for name, gain in gains.items() if name not in exchanged}, pairs, share
+        {name: gain for name, gain in gains.items() if name not in exchanged}, pairs, share, unsure
     )
     findings += drift_findings(sound, lags, sensors.accelerometer_noise, share)
     transducers = {

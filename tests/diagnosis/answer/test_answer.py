@@ -1,6 +1,7 @@
 """From evidences to an answer: thresholds, coarsened odds, free forces and sets."""
 
 from types import SimpleNamespace
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -10,8 +11,11 @@ from blockshake.diagnosis.answer.answer import (
     ODDS,
     Rival,
     coarsened,
-    group_of,
+    find_causes,
     needed_beside,
+    needed_of,
+    rank,
+    share_of,
     slab_groups,
 )
 from blockshake.diagnosis.outside import free_force
@@ -33,29 +37,87 @@ def test_odds_of_small_gains_are_plain_and_those_of_large_ones_a_share_of_what_i
     assert coarsened(COARSENING * 1e6, 1e6) == pytest.approx(ODDS, rel=1e-3)
 
 
+def found(ranked, tree=True, more=0.0):
+    """The group of the first cause, or None."""
+    groups = find_causes(
+        lambda known: [] if known else ranked, lambda cause, known: needed_of(cause, tree) + more
+    )
+    return groups[0] if groups else None
+
+
 def test_nothing_strong_is_no_answer():
-    assert group_of(rivals(eccentricity=5.9, unknown_force=19.9)) is None
-    assert causes(group_of(rivals(eccentricity=6.1))) == ("eccentricity",)
+    assert found(rivals(eccentricity=5.9, unknown_force=19.9)) is None
+    assert causes(found(rivals(eccentricity=6.1))) == ("eccentricity",)
 
 
 def test_a_rival_within_the_odds_is_in_the_set_and_forms_from_outside_are_said():
-    group = group_of(rivals(eccentricity=30.0, push=29.0, drag=10.0))
+    group = found(rivals(eccentricity=30.0, push=29.0, drag=10.0))
     assert causes(group) == ("eccentricity", "push")
     assert group.gains["drag"] == 10.0
 
 
 def test_a_second_cause_needs_more_beside_a_large_first_one():
+    small, large = rivals(push=1e-9), rivals(push=1000.0)
     assert needed_beside(False) == 0.0
-    assert needed_beside(False, 1000.0) - needed_beside(False, 0.0) == pytest.approx(100.0)
-    assert needed_beside(True, 0.0) > needed_beside(False, 0.0) > 0.0
-    assert group_of(rivals(weak_joint=15.0), needed=10.0) is None
-    assert causes(group_of(rivals(weak_joint=17.0), needed=10.0)) == ("weak-joint",)
+    assert needed_beside(False, large) - needed_beside(False, small) == pytest.approx(100.0)
+    assert needed_beside(True, small) > needed_beside(False, small) > 0.0
+    assert found(rivals(weak_joint=15.0), more=10.0) is None
+    assert causes(found(rivals(weak_joint=17.0), more=10.0)) == ("weak-joint",)
+
+
+def test_causes_are_added_one_by_one_each_ranked_beside_those_before_it_until_none_is_strong():
+    beside = [rivals(push=90.0, drag=89.0), rivals(eccentricity=40.0), rivals(weak_joint=10.0)]
+    asked = []
+
+    def ranked(known):
+        asked.append([one.cause for one in known])
+        return beside[len(known)]
+
+    groups = find_causes(ranked, lambda cause, known: needed_of(cause) + share_of(known))
+    assert list(map(causes, groups)) == [("push", "drag"), ("eccentricity",)]
+    assert asked == [[], ["push"], ["push", "eccentricity"]]  # 10 nats are less than 6 and a tenth of 130
 
 
 def test_lost_friction_needs_more_where_no_normal_force_is_known():
-    assert group_of(rivals(weak_joint=39.0), tree=False) is None
-    assert causes(group_of(rivals(weak_joint=41.0), tree=False)) == ("weak-joint",)
-    assert causes(group_of(rivals(eccentricity=9.0), tree=False)) == ("eccentricity",)
+    assert found(rivals(weak_joint=39.0), tree=False) is None
+    assert causes(found(rivals(weak_joint=41.0), tree=False)) == ("weak-joint",)
+    assert causes(found(rivals(eccentricity=9.0), tree=False)) == ("eccentricity",)
+
+
+class OfTwoBlocks:
+    """Evidence of one cause, 85 nats at block-1 and less at two others, of which the readings bear out some."""
+
+    gains: ClassVar = {"block-1": 85.0, "block-2": 70.0, "block-3": 10.0}
+    keys: ClassVar = [("eccentricity", place) for place in gains]
+
+    def __init__(self, contrast):
+        self.contrast = contrast
+
+    def gain(self, key):
+        """Over none."""
+        return self.gains[key[1]]
+
+    def apart(self, cause, places):
+        """The smaller of both, plain."""
+        return [min(self.gains[places[0]] - self.gains[place], self.contrast) for place in places]
+
+
+@pytest.mark.parametrize(
+    ("contrast", "joined", "places"),
+    [
+        (100.0, [], ("block-1",)),
+        (1.0, [], ("block-1", "block-2", "block-3")),  # the columns hardly differ: more is no evidence
+        (100.0, [{"block-1", "block-2"}], ("block-1", "block-2")),  # their joint opened in no test
+        (100.0, [{"block-2", "block-3"}], ("block-1",)),
+    ],
+)
+def test_places_are_told_apart_where_the_readings_tell_them(contrast, joined, places):
+    (rival,) = rank(OfTwoBlocks(contrast), joined=joined)
+    assert rival.places == places
+    # beside it the same cause at one of its places is no other cause
+    left = [place for place in OfTwoBlocks.gains if place not in places]
+    again = rank(OfTwoBlocks(contrast), joined=joined, known=[rival])
+    assert [one.place for one in again] == left[:1]
 
 
 def test_the_slab_s_rotation_and_its_vertical_motion_are_judged_apart():

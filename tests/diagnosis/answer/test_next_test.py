@@ -8,7 +8,7 @@ from made_up_decision import made_up_cause
 
 from blockshake.diagnosis.answer.answer import COARSENING, ODDS
 from blockshake.diagnosis.answer.next_test import _split, next_tests, readings_of_cause
-from blockshake.diagnosis.answer.places import place_name
+from blockshake.diagnosis.answer.places import joined_bodies, place_name
 from blockshake.diagnosis.answer.static_tests import distance, expected_readings, static_tests
 from blockshake.forces.faces import find_faces
 from blockshake.geometry.structure import load_structure
@@ -21,7 +21,20 @@ def seen():
     """Three equal blocks on a slab: of a seen test the structure and its faces alone."""
     structure = load_structure("configuration-1")
     faces, free = find_faces(structure), np.flatnonzero(~structure.driven)
-    return SimpleNamespace(structure=structure, faces=faces, free=free, tree=len(faces) == len(free))
+    none = SimpleNamespace(force=np.zeros((0, len(faces))))
+    return SimpleNamespace(
+        structure=structure, faces=faces, free=free, tree=len(faces) == len(free), forces=none
+    )
+
+
+def _moved(seen, *joints):
+    """The seen test of a few instants at which some of its joints turned, and no other moved."""
+    shape = (4, len(seen.faces))
+    edge, rest = np.zeros((*shape, 2)), np.zeros(shape)
+    for index, face in enumerate(seen.faces):
+        edge[2, index, 0] = face.name in joints
+    states = SimpleNamespace(edge=edge, slip=rest, lifted=rest)
+    return SimpleNamespace(**vars(seen) | {"forces": SimpleNamespace(force=rest), "states": states})
 
 
 def _cause(name, place, odds=0.0, when=None, **sizes):
@@ -104,3 +117,21 @@ def test_a_form_of_the_size_is_not_taken_for_the_size(seen):
     ((middle, errors),) = readings_of_cause(seen, worn)
     assert set(middle.values()) == {-0.05}
     assert list(errors.values()) == pytest.approx([0.01 / 3.29] * len(seen.faces))
+
+
+def test_blocks_whose_joint_opened_in_no_test_are_told_apart_by_what_opens_or_weighs_it(seen):
+    moved = _moved(seen, "slab-block-1", "block-2-block-3")
+    assert joined_bodies([moved]) == [{"block-1", "block-2"}]
+    assert joined_bodies([moved, _moved(seen, "block-1-block-2")]) == []
+    places = {"places": ("block-1", "block-2"), "gain": 85.0}
+    eccentric = _cause("eccentricity", {"body": "block-1"}, offset=0.035).model_copy(update=places)
+    ranked = next_tests([eccentric], [moved], None)
+    assert {one.between for one in ranked} == {("block-1", "block-2")}
+    shares = {one.test: one.share for one in ranked}
+    assert min(shares.values()) > 0.9
+    assert set(shares) == {
+        "weigh block-1 on two supports",
+        "weigh block-2 on two supports",
+        "weigh block-2 by a wedge under each edge until block-1-block-2 opens",
+        "a stronger test, in which block-1-block-2 opens",
+    }

@@ -5,8 +5,11 @@ import pytest
 from scipy.integrate import quad
 from scipy.stats import multivariate_normal, norm
 
+from blockshake.diagnosis.answer.size import size_of
+from blockshake.diagnosis.evidence.explanation import best_of
 from blockshake.diagnosis.evidence.likelihood import from_rows
 from blockshake.diagnosis.evidence.stop_search import _gains_of_pairs
+from blockshake.effects.effect import Columns
 
 
 def _covariance(size, seed):
@@ -106,3 +109,35 @@ def test_two_stops_gain_as_their_two_columns_do_where_neither_pulls():
     # far from zero the halves of both priors hold the whole posterior: each adds ln 2
     assert gain[0, 0] == pytest.approx(free.gain + np.log(4.0), abs=1e-4)
     np.testing.assert_allclose(means[:, 0, 0], free.mean, rtol=1e-12)
+
+
+def test_evidence_of_a_size_that_no_structure_exceeds_is_an_integral_over_its_support(problem):
+    likelihood, value, covariance, columns = problem
+    column, scale, most = np.concatenate(columns)[:, 0], 1.5, 0.4
+    density, prior = multivariate_normal(cov=covariance), norm(scale=scale)
+
+    def integrand(amplitude):
+        return prior.pdf(amplitude) * np.exp(
+            density.logpdf(value - amplitude * column) - density.logpdf(value)
+        )
+
+    inside = prior.cdf(most) - prior.cdf(-most)
+    expected = np.log(quad(integrand, -most, most, epsabs=0.0)[0] / inside)
+    variant = [Columns({}, rows[:, :1], (scale,), False, most) for rows in columns]
+    found = best_of(likelihood, "eccentricity", "block-1", [variant])
+    assert found.gain == pytest.approx(expected, rel=1e-9)
+    drawn = size_of("eccentricity", "block-1", *[(found.fits, np.zeros(1))] * 2)["offset"]
+    assert -most <= drawn.lower < drawn.upper <= most
+
+
+def test_two_causes_beside_each_other_have_the_sizes_of_their_joint_posterior(problem):
+    """A column among the nuisances leaves the other's amplitude that of both free together."""
+    likelihood, _, _, columns = problem
+    first, second = ([rows[:, [one]] for rows in columns] for one in (0, 1))
+    pair = likelihood.amplitudes(likelihood.whiten([rows[:, :2] for rows in columns]), np.array([0.5, 2.0]))
+    none = [np.zeros((len(rows),) * 2) for rows in columns]
+    for own, other, scales, number in ((first, second, (0.5, 2.0), 0), (second, first, (2.0, 0.5), 1)):
+        beside = likelihood.beside(other, np.array([scales[1]]), none)
+        alone = beside.amplitudes(beside.whiten(own), np.array([scales[0]]))
+        assert alone.mean[0] == pytest.approx(pair.mean[number])
+        assert alone.covariance[0, 0] == pytest.approx(pair.covariance[number, number])

@@ -21,6 +21,7 @@ _BESIDE_SLAB = 10.0  # nats more of a cause in the joints of a slab that has one
 _BESIDE = 5.0  # nats more of a second cause in the joints
 _BESIDE_SHARE = 0.1  # of the first one's gain, beside that
 ODDS = float(np.log(20.0))  # within which causes are not told apart
+_MOST_CAUSES = 3
 COARSENING = 0.05  # share of what it explains that the form of a cause may leave unexplained
 
 
@@ -46,19 +47,28 @@ class Group:
     gains: dict
 
 
-def rank(evidence, closed=None):
+def rank(evidence, closed=None, joined=(), known=()):
     """`Rival` by falling score, from `Evidence` or None.
 
-    ``closed`` has by joint the gain of every compliance, from closed joints.
+    Parameters
+    ----------
+    evidence : Evidence or None
+    closed : dict of str to float64 array, optional
+        By joint, the gain of every compliance from closed joints.
+    joined : list of set of str
+        Bodies that are one place, from `joined_bodies`.
+    known : sequence of Rival
+        Causes that act already: at the places of one of them its cause is no other one.
     """
-    gains = {}
+    gains, taken = {}, {(one.cause, place) for one in known for place in one.places}
     for cause, place in evidence.keys if evidence else ():
-        if cause != JOINT_COMPLIANCE.name:
+        if cause != JOINT_COMPLIANCE.name and (cause, place) not in taken:
             gains.setdefault(cause, {})[place] = evidence.gain((cause, place))
+    rivals = [_rival(cause, places, evidence, joined) for cause, places in gains.items()]
     soft = _soft_joints(evidence, closed or {})
     if soft:
-        gains[JOINT_COMPLIANCE.name] = soft
-    return sorted((_rival(cause, places) for cause, places in gains.items()), key=lambda one: -one.score)
+        rivals.append(_rival(JOINT_COMPLIANCE.name, soft, None, ()))
+    return sorted(rivals, key=lambda one: -one.score)
 
 
 def _soft_joints(evidence, closed):
@@ -82,43 +92,68 @@ def soft_gains(turned, closed):
     return np.logaddexp(turned + closed, closed) - np.log(2.0)
 
 
-def _rival(cause, places):
+def _rival(cause, places, evidence, joined):
     gain = float(mean_evidence(list(places.values())))
-    best = max(places, key=places.get)
-    near = tuple(
+    best, *_ = ordered = sorted(places, key=lambda one: -places[one])
+    if evidence is None:
+        apart = [coarsened(places[best] - places[place], places[best]) for place in ordered]
+    else:
+        apart = evidence.apart(cause, ordered)
+    near = {place for place, odds in zip(ordered, apart, strict=True) if odds < ODDS}
+    bodies = {place.partition("@")[0] for place in near}
+    near |= {
         place
-        for place in sorted(places, key=lambda one: -places[one])
-        if coarsened(places[best] - places[place], places[best]) < ODDS
-    )
+        for place in ordered
+        for group in joined
+        if place.partition("@")[0] in group and not bodies.isdisjoint(group)
+    }
+    near = tuple(place for place in ordered if place in near)
     prior = _PRIOR_OUTSIDE if cause in FORMS else _PRIOR
     score = gain + prior if cause != FREE_FORCE else FREE_SHARE * gain + _PRIOR_FREE
     return Rival(cause, best, gain, score, near)
 
 
-def group_of(ranked, needed=0.0, tree=True):
-    """`Group` of the strongest cause and all that cannot be told from it; None where nothing is strong.
+def find_causes(ranked, needed):
+    """`Group` by falling strength, each found beside the first causes of those before it: rank, compare, add, go on.
 
-    ``needed`` is a gain beyond the usual one, and ``tree`` says that the joints make no loop.
+    Parameters
+    ----------
+    ranked : callable
+        Of the first `Rival` of every group found so far: all rivals beside them, by falling score.
+    needed : callable
+        Of the name of a cause and these: the gain over none from which the cause is no chance.
     """
-    strong = [rival for rival in ranked if rival.gain > needed_of(rival.cause, tree) + needed]
-    if not strong:
-        return None
-    return _group(strong[0], ranked)
+    groups = []
+    while len(groups) < _MOST_CAUSES:
+        known = [group.rivals[0] for group in groups]
+        rivals = ranked(known)
+        strong = [one for one in rivals if one.gain > needed(one.cause, known)]
+        if not strong:
+            break
+        groups.append(group_of(strong[0], rivals))
+    return groups
 
 
-def _group(first, ranked):
+def group_of(first, ranked):
+    """`Group` of a cause and all that cannot be told from it."""
+
     odds = {rival.cause: coarsened(first.score - rival.score, first.score) for rival in ranked}
     near = tuple(rival for rival in ranked if odds[rival.cause] < ODDS)
     return Group(near, odds, {rival.cause: rival.gain for rival in ranked})
 
 
-def needed_beside(slab, first=None):
+def needed_beside(slab, known=()):
     """Gain that is needed beyond the usual one.
 
-    ``slab`` says whether the slab's own motion has a cause, and ``first`` is the gain of a first cause in the joints.
+    ``slab`` says whether the slab's own motion has a cause, and ``known`` are `Rival` found in the joints before.
     """
     more = _BESIDE_SLAB if slab else 0.0
-    return more if first is None else more + _BESIDE + _BESIDE_SHARE * first
+    return more + _BESIDE + share_of(known) if known else more
+
+
+def share_of(known):
+    """Share of what the `Rival` found before gain, that one more needs besides: errors of their form."""
+    return _BESIDE_SHARE * sum(one.gain for one in known)
 
 
 def needed_of(cause, tree=True):
@@ -147,7 +182,7 @@ def slab_groups(explained):
         ]
         ranked = sorted(rivals, key=lambda one: -one.gain)
         if ranked and ranked[0].gain > _NEEDED_OF_SLAB[moves]:
-            groups.append((readings, _group(ranked[0], ranked)))
+            groups.append((readings, group_of(ranked[0], ranked)))
     return groups
 
 

@@ -7,7 +7,7 @@ import xarray as xr
 
 from blockshake.diagnosis.answer.answer import (
     coarsened,
-    group_of,
+    find_causes,
     needed_beside,
     needed_of,
     rank,
@@ -20,18 +20,18 @@ from blockshake.diagnosis.answer.explain import gather_evidence
 from blockshake.diagnosis.answer.history import histories, of_last_test
 from blockshake.diagnosis.answer.limits import cannot_see, excluded_above, limits_of
 from blockshake.diagnosis.answer.next_test import next_tests
-from blockshake.diagnosis.answer.places import EVERYWHERE, place_of
+from blockshake.diagnosis.answer.places import EVERYWHERE, joined_bodies, place_of
 from blockshake.diagnosis.answer.size import members_of, size_of
 from blockshake.diagnosis.evidence.closed_joints import closed_joints
 from blockshake.diagnosis.evidence.explanation import Fit, mean_evidence
 from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
 from blockshake.diagnosis.evidence.spin_kept import restitution_gain
-from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.impact_restitution import EFFECT as RESTITUTION
 from blockshake.effects.joint_compliance import COMPLIANCES
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
 from blockshake.effects.registry import EFFECTS
 
+_JOINTS = "joints", "joints, beside the first"
 _NOT_SHOWN = "no departure larger than chance"
 
 
@@ -54,27 +54,20 @@ def decide(seen, without=(), unseen=()):
     unseen : sequence of str
         Lines on tests of which nothing was read.
     """
-    evidence = gather_evidence(seen, without)
     joints = {} if JOINT_COMPLIANCE.name in without else closed_joints(seen)
     closed = {name: joint.gains for name, joint in joints.items()}
     slabs = [slab_motion(test) for test in seen]
     slab = explain_slab(slabs, without)
-    of_slab, tree = slab_groups(slab), seen[0].tree
-    acting, explained, beside = [], [], None
-    first = group_of(rank(evidence, closed), needed_beside(bool(of_slab)), tree)
-    if first:
-        acting.append(_part("joints", first, seen, evidence, closed))
-        key = _key(first)
-        if evidence and key in evidence.keys:
-            explained.append(evidence.best(key))
-            beside = evidence.beside(key)
-            needed = needed_beside(bool(of_slab), first.rivals[0].gain)
-            second = group_of(rank(beside), needed, tree)
-            if second:
-                acting.append(_part("joints, beside the first", second, seen, beside, {}))
-                explained.append(beside.best(_key(second)))
-    paths = histories(evidence, beside, first.rivals[0] if first else None, seen[0])
-    if first:
+    of_slab = slab_groups(slab)
+    stages, groups = _in_joints(seen, gather_evidence(seen, without), closed, bool(of_slab))
+    fitted, explained = _together(stages, groups)
+    acting = [
+        _part(_JOINTS[min(number, 1)], group, seen, evidence, {} if number else closed)
+        for number, (group, evidence) in enumerate(zip(groups, fitted, strict=True))
+    ]
+    evidence, beside = stages[0], stages[1] if stages[1:] else None
+    paths = histories(evidence, beside, groups[0].rivals[0] if groups else None, seen[0])
+    if groups:
         acting[0] = _with_last_sizes(acting[0], paths)
     for readings, group in of_slab:
         acting.append(_part(readings, group, seen, None, {}, slab))
@@ -102,6 +95,45 @@ def decide(seen, without=(), unseen=()):
     return Decided(decision, shown.merge(slab_departures(seen, slabs, slab, parts)))
 
 
+def _in_joints(seen, evidence, closed, slab):
+    """Lists of `Evidence`, each beside the first cause of one group more, and of `Group`; see `find_causes`.
+
+    ``closed`` is as of `rank`, and ``slab`` says whether the slab's own motion has a cause.
+    """
+    stages, joined, tree = [evidence], joined_bodies(seen), seen[0].tree
+
+    def ranked(known):
+        if not known:
+            return rank(evidence, closed, joined)
+        key, last = (known[-1].cause, known[-1].place), stages[-1]
+        if last is None or key not in last.keys:  # it shows in closed joints alone
+            return []
+        stages.append(last.heard(key).beside([last.best(key)]))
+        return rank(stages[-1], {}, joined, known)
+
+    def needed(cause, known):
+        return needed_of(cause, tree) + needed_beside(slab, known)
+
+    return stages, find_causes(ranked, needed)
+
+
+def _together(stages, groups):
+    """`Evidence` of the causes of every group beside the first ones of all others, and the `Explanation` of its first.
+
+    So sizes are those of the joint posterior. A group whose cause shows in closed joints alone has no explanation.
+    """
+    keys = [(group.rivals[0].cause, group.rivals[0].place) for group in groups]
+    found = [stage.best(key) for stage, key in zip(stages, keys, strict=False) if stage and key in stage.keys]
+    fitted = list(stages[: len(groups)])
+    for number, group in enumerate(groups[:-1]):
+        if len(found) == len(groups):
+            causes = {rival.cause for rival in group.rivals}
+            others = [one for other, one in enumerate(found) if other != number]
+            fitted[number] = stages[0].heard(keys[0]).beside(others, causes)
+            found[number] = fitted[number].best(keys[number])
+    return fitted, found
+
+
 def _with_last_sizes(part, paths):
     """The `Part` with its first cause as large as in the last test, where the cause changes from test to test."""
     first, *others = part.causes
@@ -114,10 +146,6 @@ def _of_impacts(impacts):
     name, gain = RESTITUTION.name, impacts.gain
     cause = Cause(name=name, place={}, places=(EVERYWHERE,), gain=gain, odds=0.0, parameters={}, members=())
     return Part(readings="impacts", causes=(cause,), odds={name: 0.0}, gains={name: gain})
-
-
-def _key(group):
-    return group.rivals[0].cause, group.rivals[0].place
 
 
 def chance(part):
@@ -155,8 +183,7 @@ def _part(readings, group, seen, evidence, closed, slab=None):
     causes = []
     for rival in group.rivals:
         fits, logs = _fits(rival, [rival.place], evidence, closed, slab)
-        # a force is said where it is the likeliest; of an effect the places of its class give one size
-        alike = (fits, logs) if rival.cause in FORMS else _fits(rival, rival.places, evidence, closed, slab)
+        alike = _fits(rival, rival.places, evidence, closed, slab)
         best = fits[int(np.argmax(logs))]
         causes.append(
             Cause(
@@ -165,7 +192,7 @@ def _part(readings, group, seen, evidence, closed, slab=None):
                 places=rival.places,
                 gain=rival.gain,
                 odds=group.odds[rival.cause],
-                parameters=size_of(rival.cause, rival.place, *alike),
+                parameters=size_of(rival.cause, rival.place, (fits, logs), alike),
                 members=members_of(rival.cause, rival.place, fits, logs),
                 when=best.values,
                 amplitudes=best.mean.tolist(),

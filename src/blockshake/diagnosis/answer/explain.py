@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
-from blockshake.diagnosis.answer.answer import coarsened
+from blockshake.diagnosis.answer.answer import ODDS, coarsened
 from blockshake.diagnosis.answer.places import place_name
 from blockshake.diagnosis.evidence.explanation import best_of
 from blockshake.diagnosis.evidence.joint_rows import JointRows
@@ -19,6 +19,7 @@ from blockshake.diagnosis.outside.following import explain_following
 from blockshake.diagnosis.outside.free_force import explain_free_force
 from blockshake.diagnosis.outside.loose_weight import explain_loose_weight
 from blockshake.diagnosis.outside.push import explain_push
+from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.diagnosis.outside.spring_once import explain_spring_once
 from blockshake.effects.block_mass import HEIGHTS
 from blockshake.effects.registry import EFFECTS
@@ -29,6 +30,7 @@ NOISES = (0.75, 1.0, 1.3)  # standard deviation of the sensors over the stated o
 _UNHEARD = 20.0  # nats: a likelihood that says so much less for the first cause adds nothing
 _LOOKED_AT = 4  # causes
 _FIRST_LOOK = (1.0,), ((4.0, 0.0),)
+EVERY = (*EFFECTS, *FORMS)
 DISCREPANCIES = ((1.0, 0.0), (4.0, -3.0), (16.0, -10.0))  # multiple, logarithm of its prior
 
 
@@ -85,21 +87,23 @@ def heard(tried):
             best[explanation.cause] = explanation
     among, kept = likelihoods(tried.tests), set()
     for cause in sorted(best.values(), key=lambda explanation: -explanation.gain)[:_LOOKED_AT]:
-        logs = np.array([_with_cause(likelihood, cause, tried.tests).log_evidence for likelihood in among])
+        logs = np.array([beside(likelihood, tried.tests, cause).log_evidence for likelihood in among])
         kept |= set(np.flatnonzero(logs > logs.max() - _UNHEARD))
     return [among[index] for index in sorted(kept)]
 
 
-def explain(likelihood, tried):
-    """`Explained` by all causes at all places."""
+def explain(likelihood, tried, causes=EVERY):
+    """`Explained` by causes of some names at all places."""
     explanations = [
         explain_stops(likelihood, place, variants)
         if name == STOPPER_CONTACT.name
         else best_of(likelihood, name, place, variants)
         for (name, place), variants in tried.variants.items()
+        if name in causes
     ]
-    explanations += _from_outside(likelihood, tried.tests, tried.points)
-    by_key = {(explanation.cause, explanation.place): explanation for explanation in explanations}
+    if not FORMS.keys().isdisjoint(causes):
+        explanations += _from_outside(likelihood, tried.tests, tried.points)
+    by_key = {(one.cause, one.place): one for one in explanations if one.cause in causes}
     return Explained(likelihood, by_key)
 
 
@@ -151,10 +155,7 @@ class Evidence:
 
     def loudest(self, key):
         """`Explained` beside the likelihood that speaks loudest for a cause at a place."""
-        speaks = [
-            explained.by_key[key].gain + explained.likelihood.log_evidence for explained in self.explained
-        ]
-        return self.explained[int(np.argmax(speaks))]
+        return self.explained[int(np.argmax(self._speaks(key)))]
 
     def fits(self, cause, places):
         """All `Fit` of a cause at places that cannot be told apart, with the logarithms of their weights.
@@ -162,19 +163,39 @@ class Evidence:
         Returns
         -------
         list of Fit, float64 array
-            Over all likelihoods; from place to place coarsened, see `coarsened`.
+            Over all likelihoods; from place to place by `apart`, the best one first.
         """
-        gains = [self.gain((cause, place)) for place in places]
         fits, logs = [], []
-        for place, gain in zip(places, gains, strict=True):
+        for place, apart in zip(places, self.apart(cause, places), strict=True):
             here, weights = [], []
             for explained in self.explained:
                 for fit in explained.by_key[cause, place].fits:
                     here.append(fit)
                     weights.append(fit.gain + explained.likelihood.log_evidence)
             fits += here
-            logs += list(np.array(weights) - logsumexp(weights) - coarsened(max(gains) - gain, max(gains)))
+            logs += list(np.array(weights) - logsumexp(weights) - min(apart, ODDS))
         return fits, np.array(logs)
+
+    def apart(self, cause, places):
+        """Logarithms of the odds of a cause at the first of some places over each of them, coarsened, list of float.
+
+        No more than the readings are expected to give: half the square of what the first one's rows differ by from the
+        best ones of the other place, nuisances free. More is an error of the model, which one of the columns takes up.
+        """
+        first, *others = (self.gain((cause, place)) for place in places)
+        explained = self.loudest((cause, places[0]))
+        made, found = [rows[:, None] for rows in explained.by_key[cause, places[0]].rows], [0.0]
+        for place, gain in zip(places[1:], others, strict=True):
+            odds = coarsened(first - gain, first)
+            if odds >= ODDS and first > ODDS:
+                fit = explained.by_key[cause, place].best
+                rival = [column * fit.scales for column in fit.columns]
+                both = [np.hstack(pair) for pair in zip(made, rival, strict=True)]
+                gram = explained.likelihood.normal_equations(explained.likelihood.whiten(both))[1]
+                shared = np.linalg.solve(gram[1:, 1:] + np.eye(len(gram) - 1), gram[1:, 0])
+                odds = coarsened(min(first - gain, 0.5 * float(gram[0, 0] - gram[0, 1:] @ shared)), first)
+            found.append(odds)
+        return found
 
     @property
     def keys(self):
@@ -186,27 +207,27 @@ class Evidence:
         gains = np.array(gains)
         return logsumexp(gains + logs.reshape(-1, *[1] * (gains.ndim - 1)), axis=0) - logsumexp(logs)
 
-    def beside(self, key):
-        """`Evidence` of the causes beside that of a cause at a place, whose columns are nuisances now."""
-        speaks = np.array(
-            [explained.by_key[key].gain + explained.likelihood.log_evidence for explained in self.explained]
-        )
-        heard = [
-            explained
-            for explained, says in zip(self.explained, speaks, strict=True)
-            if says > speaks.max() - _UNHEARD
-        ]
-        return Evidence(
-            self.tried,
-            [
-                explain(_with_cause(explained.likelihood, explained.by_key[key], self.tests), self.tried)
-                for explained in heard
-            ],
-        )
+    def heard(self, key):
+        """`Evidence` of the likelihoods that matter beside a cause at a place."""
+        speaks = self._speaks(key)
+        kept = np.flatnonzero(speaks > speaks.max() - _UNHEARD)
+        return Evidence(self.tried, [self.explained[index] for index in kept])
+
+    def _speaks(self, key):
+        return np.array([one.by_key[key].gain + one.likelihood.log_evidence for one in self.explained])
+
+    def beside(self, found, causes=EVERY):
+        """`Evidence` of causes beside some `Explanation`, whose columns are nuisances now."""
+        explained = []
+        for likelihood in (one.likelihood for one in self.explained):
+            for cause in found:
+                likelihood = beside(likelihood, self.tests, cause)
+            explained.append(explain(likelihood, self.tried, causes))
+        return Evidence(self.tried, explained)
 
 
-def _with_cause(likelihood, cause, tests):
-    """A likelihood with the best fit of an `Explanation` among its nuisances."""
+def beside(likelihood, tests, cause):
+    """A likelihood with the best fit of an `Explanation` among its nuisances, and the error of its form."""
     errors = [form_error(test.rows.time, rows) for test, rows in zip(tests, cause.rows, strict=True)]
     return likelihood.beside(cause.best.columns, cause.best.scales, errors)
 

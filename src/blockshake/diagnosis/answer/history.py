@@ -38,7 +38,7 @@ def histories(evidence, beside, first, seen):
     """
     if evidence is None:
         return ()
-    more = needed_beside(False, first.gain) if first and (first.cause, first.place) in evidence.keys else 0.0
+    more = needed_beside(False, [first]) if first and (first.cause, first.place) in evidence.keys else 0.0
     own = _own(evidence, first, seen, more) if more else None
     of_edges = own is not None and first.cause in _OF_EDGES
     others = (quantity for quantity in _SOUND if not (of_edges and quantity == EDGES))
@@ -72,7 +72,7 @@ def of_last_test(cause, history):
 def _own(evidence, first, seen, more):
     """`History` of a cause at its best place; None where it has no amplitude or does not act in all tests."""
     fit, place = evidence.best((first.cause, first.place)).best, place_of(first.cause, first.place, seen)
-    size, form = float(fit.contrast @ fit.mean), FORMS.get(first.cause)
+    size, form = fit.size[0], FORMS.get(first.cause)
     if not fit.covariance.any() or size == 0.0 or (form and form.rows is None):
         return None
     if form:

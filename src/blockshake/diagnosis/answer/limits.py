@@ -6,7 +6,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from blockshake.diagnosis.answer.answer import needed_of, needed_of_slab, soft_gains
-from blockshake.diagnosis.answer.places import EVERYWHERE, place_name
+from blockshake.diagnosis.answer.places import EVERYWHERE, place_name, unmoved_joints
 from blockshake.diagnosis.evidence.explanation import best_of, mean_evidence
 from blockshake.diagnosis.evidence.slab_motion import explain_lift, slab_turns
 from blockshake.effects.joint_compliance import COMPLIANCES
@@ -206,13 +206,6 @@ def _of_body(tests, body):
 
 
 def _of_joints(tests):
-    for index, face in enumerate(tests[0].faces):
-        read = [seen for seen in tests if np.isfinite(seen.forces.force[:, index]).any()]
-        moved = any(
-            seen.states.edge[:, index].any()
-            or seen.states.slip[:, index].any()
-            or seen.states.lifted[:, index].any()
-            for seen in read
-        )
-        if read and not moved:
-            yield f"{face.name}: turned, slipped and lifted in no test; of its causes a soft layer alone would show"
+    for index in unmoved_joints(tests):
+        name = tests[0].faces[index].name
+        yield f"{name}: turned, slipped and lifted in no test; of its causes a soft layer alone would show"

@@ -5,8 +5,13 @@ from scipy.special import ndtr
 
 from blockshake.diagnosis.answer.answer import COARSENING, ODDS
 from blockshake.diagnosis.answer.decision import Measurement
-from blockshake.diagnosis.answer.places import place_of
-from blockshake.diagnosis.answer.static_tests import distance, expected_readings, static_tests
+from blockshake.diagnosis.answer.places import place_of, unmoved_joints
+from blockshake.diagnosis.answer.static_tests import (
+    carried_bodies,
+    distance,
+    expected_readings,
+    static_tests,
+)
 from blockshake.diagnosis.outside.registry import FORMS
 
 _LEAST = 0.05  # share of split cases, below which a measurement is no advice
@@ -16,7 +21,7 @@ REPEAT = "shake"
 
 
 def next_tests(causes, seen, evidence):
-    """`Measurement` by falling share of split cases, of causes that the tests do not tell apart.
+    """`Measurement` by falling share of split cases, of causes, or bodies of one, that the tests do not tell apart.
 
     Parameters
     ----------
@@ -32,12 +37,13 @@ def next_tests(causes, seen, evidence):
     the true cause is left alone: by the rival that leaves it latest, averaged over the causes by their odds and over
     the places of each; a rival may be at any of its own.
     """
+    causes, between = _hypotheses(causes)
     if len(causes) < 2:
         return ()
-    numbers = range(len(causes))
+    numbers, unmoved = range(len(causes)), unmoved_joints(seen)
     read = [readings_of_cause(seen[0], cause) for cause in causes]
     apart = {}
-    for static in static_tests(seen[0]):
+    for static in static_tests(seen[0], unmoved):
         apart[static.kind, static.words] = {
             (one, other): [
                 (min(distance(static, *true, *rival) for rival in read[other]), 0.0) for true in read[one]
@@ -47,7 +53,10 @@ def next_tests(causes, seen, evidence):
         }
     for number, test in enumerate(evidence.tests if evidence else ()):
         apart[REPEAT, f"repeat {test.seen.name}"] = _further_rows(causes, evidence, number)
-    weights, between = np.exp([-cause.odds for cause in causes]), tuple(cause.name for cause in causes)
+    for face in unmoved if seen[0].tree else ():
+        name = seen[0].faces[face].name
+        apart[REPEAT, f"a stronger test, in which {name} opens"] = _opened(causes, seen[0], face)
+    weights = np.exp([-cause.odds for cause in causes])
     found = []
     for (kind, words), squares in apart.items():
         shares = []
@@ -65,6 +74,35 @@ def next_tests(causes, seen, evidence):
         if share >= _LEAST:
             found.append(Measurement(between=between, kind=kind, test=words, share=share))
     return tuple(sorted(found, key=lambda one: (-one.share, one.test))[:_MOST])
+
+
+def _hypotheses(causes):
+    """Causes between which a measurement decides, and their names: those of a set, or a single one at each body."""
+    if len(causes) > 1:
+        return causes, tuple(cause.name for cause in causes)
+    by_body = {}
+    for place in causes[0].places if "body" in causes[0].place else ():
+        by_body.setdefault(place.partition("@")[0], []).append(place)
+    return [causes[0].model_copy(update={"places": tuple(own)}) for own in by_body.values()], tuple(by_body)
+
+
+def _opened(causes, seen, face):
+    """By true cause and rival: squares of rows that a joint would show, were it to open as the others have.
+
+    As much as all rows so far, of causes that act on a body, one above the joint and one below it.
+    """
+    above = {seen.structure.body_names[body] for body in carried_bodies(seen, face)}
+    sides = [
+        {place.partition("@")[0] in above for place in cause.places} if "body" in cause.place else set()
+        for cause in causes
+    ]
+    numbers = range(len(causes))
+    return {
+        (one, other): [(2.0 * causes[one].gain, causes[one].gain)]
+        for one in numbers
+        for other in numbers
+        if sides[one] and sides[other] and sides[one].isdisjoint(sides[other])
+    }
 
 
 def _split(true, rival, square, gained, rows):

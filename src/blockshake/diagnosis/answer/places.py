@@ -1,5 +1,7 @@
 """Places of causes, in words and as files have them."""
 
+import numpy as np
+
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS
 
@@ -11,6 +13,36 @@ def place_name(place):
     if "joint" in place:
         return "-".join(place["joint"])
     return f"{place['body']}@{place['height']:g}" if "height" in place else place.get("body", EVERYWHERE)
+
+
+def unmoved_joints(tests):
+    """Indices of the faces that turned, slipped and lifted in no seen test, of those whose force is read in one."""
+    found = []
+    for index in range(len(tests[0].faces)):
+        read = [seen for seen in tests if np.isfinite(seen.forces.force[:, index]).any()]
+        moved = (
+            (
+                seen.states.edge[:, index].any(),
+                seen.states.slip[:, index].any(),
+                seen.states.lifted[:, index].any(),
+            )
+            for seen in read
+        )
+        if read and not any(map(any, moved)):
+            found.append(index)
+    return found
+
+
+def joined_bodies(tests):
+    """Sets of names of free bodies whose common joints moved in no seen test: one place to whatever acts on a body."""
+    structure, faces = tests[0].structure, tests[0].faces
+    groups = [{structure.body_names[body]} for body in tests[0].free]
+    for index in unmoved_joints(tests):
+        pair = {structure.body_names[faces[index].lower], structure.body_names[faces[index].upper]}
+        held = [group for group in groups if group & pair]
+        if len(held) > 1:  # the slab is in none
+            groups = [group for group in groups if not group & pair] + [set().union(*held)]
+    return [group for group in groups if len(group) > 1]
 
 
 def place_of(cause, name, seen):

@@ -3,6 +3,7 @@
 import zlib
 
 import numpy as np
+from scipy.stats import truncnorm
 
 from blockshake.diagnosis.answer.decision import MEMBERS, Estimate
 from blockshake.diagnosis.outside.registry import FORMS
@@ -11,17 +12,17 @@ from blockshake.effects.registry import EFFECTS
 NINE_TENTHS = 1.645  # standard deviations of a Gaussian, within which they lie
 FORM = 0.1  # of a size, by which a cause of another form than the registry's has another one
 _DRAWS = 2000
-_INTERVAL = (0.05, 0.5, 0.95)
+_INTERVAL = (0.05, 0.95)
 
 
 def members_of(name, place, fits, logs):
-    """Sets of parameters of a cause at one place, tuple of `MEMBERS` dict; the arguments are those of `size_of`."""
+    """Sets of parameters of a cause at one place, tuple of `MEMBERS` dict, by its fits and their logarithms."""
     drawn, order = _drawn(name, place, fits, logs)
     return tuple({key: float(values[draw]) for key, values in drawn.items()} for draw in order[:MEMBERS])
 
 
-def size_of(name, place, fits, logs):
-    """Parameters of a cause, `Estimate` by name.
+def size_of(name, place, here, alike):
+    """Parameters of a cause, `Estimate` by name: at one place, in intervals that hold for all that are not told apart.
 
     Parameters
     ----------
@@ -29,12 +30,11 @@ def size_of(name, place, fits, logs):
         Effect or form.
     place : str
         In words: with the name, the seed.
-    fits : list of Fit
-    logs : float64 array, shape (n_fits,)
-        Logarithms of their weights.
+    here, alike : pair of list of Fit and float64 array, shape (n_fits,)
+        Fits at the place, and at all such places, with the logarithms of their weights.
     """
-    drawn, _ = _drawn(name, place, fits, logs)
-    return {key: _estimate(drawn[key], unit) for key, unit in units_of(name).items()}
+    own, drawn = (_drawn(name, place, *fitted)[0] for fitted in (here, alike))
+    return {key: _estimate(own[key], drawn[key], unit) for key, unit in units_of(name).items()}
 
 
 def _drawn(name, place, fits, logs):
@@ -54,12 +54,12 @@ def _drawn(name, place, fits, logs):
 
 
 def _amplitudes(fit, count, generator):
-    """Draws of a fit's amplitude, several as one of the first column, with the error of the form."""
-    mean = float(fit.contrast @ fit.mean)
-    variance = float(fit.contrast @ fit.covariance @ fit.contrast) + (FORM * mean) ** 2
-    deviation = float(np.sqrt(max(variance, 0.0)))
-    drawn = mean + deviation * generator.standard_normal(count)
-    return np.abs(drawn) if fit.positive else drawn
+    """Draws of a fit's size, with the error of the form, within its support."""
+    mean, deviation = fit.size
+    deviation = max(float(np.hypot(deviation, FORM * mean)), np.finfo(float).tiny)
+    lower, upper = (-mean if fit.positive else -fit.most - mean) / deviation, (fit.most - mean) / deviation
+    drawn = truncnorm.rvs(lower, upper, size=count, random_state=generator)
+    return mean + deviation * drawn
 
 
 def read_sizes(name, values, amplitudes, between):
@@ -77,6 +77,7 @@ def units_of(name):
     return {parameter.name: parameter.unit for parameter in EFFECTS[name].parameters}
 
 
-def _estimate(values, unit):
-    lower, middle, upper = (float(value) for value in np.quantile(values, _INTERVAL))
-    return Estimate(estimate=middle, lower=lower, upper=upper, unit=unit)
+def _estimate(own, drawn, unit):
+    middle = float(np.median(own))
+    lower, upper = (float(value) for value in np.quantile(drawn, _INTERVAL))
+    return Estimate(estimate=middle, lower=min(lower, middle), upper=max(upper, middle), unit=unit)

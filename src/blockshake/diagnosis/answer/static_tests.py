@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-WEIGHING, TILT, SNAP, JACK = "weighing", "slow tilt", "snap release", "jack"
+WEIGHING, TILT, SNAP, JACK, WEDGE = "weighing", "slow tilt", "snap release", "jack", "wedge"
 _CENTRE = 2e-3  # m, of a mass centre by load cells of 0.2 % under two supports 1 m apart
 _MASS = 0.04  # of a block's: the scatter of densities, Zhou et al. (2023), Table 2; a scale is far better
 _ANGLE = 1e-3  # rad, of an inclinometer as a joint opens
@@ -29,8 +29,11 @@ class StaticTest(NamedTuple):
     readings: dict
 
 
-def static_tests(seen):
-    """`StaticTest` of a structure, as of a `SeenTest`; of tilts, releases and pulls where the joints are a tree."""
+def static_tests(seen, unmoved=()):
+    """`StaticTest` of a structure, as of a `SeenTest`; of tilts, releases, pulls and wedges where joints are a tree.
+
+    ``unmoved`` are indices of faces that opened in no test, and may be opened by a wedge.
+    """
     structure = seen.structure
     found = [
         StaticTest(
@@ -55,6 +58,16 @@ def static_tests(seen):
     pull = weight * face.half_width / (2.0 * height)  # N, at the top, as the joint opens
     follows = {("spring", "top"): _FORCE * pull / _PULLED, ("hysteresis", "top"): _FORCE * pull}
     soft = {("layer", face.name): _LAYER}
+    for index in unmoved:
+        upper, error = seen.faces[index], _centre_above(seen, index) * _ANGLE / np.sqrt(2.0)
+        opened = {
+            ("lever", upper.name): float(np.hypot(_EDGES, error)),
+            ("lean", upper.name): float(np.hypot(_SIDE, error)),
+        }
+        words = (
+            f"weigh {structure.body_names[upper.upper]} by a wedge under each edge until {upper.name} opens"
+        )
+        found.append(StaticTest(WEDGE, words, opened))
     base = {("base", "slab"): float(np.hypot(_TABLE, _TURN / (weight * face.half_width)))}
     return [
         *found,
@@ -88,7 +101,9 @@ def expected_readings(seen, name, place, values):
     )
     if name == "eccentricity":
         index = names.index(body)
-        over = [number for number in range(len(seen.faces)) if seen.tree and index in _above(seen, number)]
+        over = [
+            number for number in range(len(seen.faces)) if seen.tree and index in carried_bodies(seen, number)
+        ]
         leans = {
             ("lean", seen.faces[number].name): size * mass[index] / _carried(seen, number) for number in over
         }
@@ -125,7 +140,7 @@ def distance(test, first, first_errors, second, second_errors):
     return float(total)
 
 
-def _above(seen, face):
+def carried_bodies(seen, face):
     """Free bodies that a face of a tree carries."""
     carried = [seen.faces[face].upper]
     for body in carried:
@@ -134,12 +149,12 @@ def _above(seen, face):
 
 
 def _carried(seen, face):
-    return float(seen.structure.mass[_above(seen, face)].sum())
+    return float(seen.structure.mass[carried_bodies(seen, face)].sum())
 
 
 def _centre_above(seen, face):
     """Height of the mass centre of what a face carries above it [m]."""
-    bodies = _above(seen, face)
+    bodies = carried_bodies(seen, face)
     mass = seen.structure.mass[bodies]
     return float(mass @ seen.structure.position[bodies, 2] / mass.sum() - _level(seen, face))
 

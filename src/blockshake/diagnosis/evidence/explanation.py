@@ -1,10 +1,10 @@
 """The explanation of the rows by a cause at a place: its evidence, and the forces that it would have made."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.special import logsumexp
+from scipy.special import log_ndtr, logsumexp
 
 _NEGLIGIBLE = 12.0  # nats below the best variant
 
@@ -20,8 +20,15 @@ class Fit:
     mean: np.ndarray  # float64 (n_amplitudes,)
     covariance: np.ndarray  # float64 (n_amplitudes, n_amplitudes)
     positive: bool = False  # the first amplitude is not negative
+    most: float = np.inf  # magnitude of the size, beyond which no structure has it
 
     @property
+    def size(self):
+        """Mean and standard deviation of the amplitudes as one of the first column."""
+        variance = float(self.contrast @ self.covariance @ self.contrast)
+        return float(self.contrast @ self.mean), float(np.sqrt(max(variance, 0.0)))
+
+    @cached_property
     def contrast(self):
         """Weights by which the amplitudes together are one of the first column, (n_amplitudes,)."""
         if len(self.mean) == 1:
@@ -66,19 +73,34 @@ def best_of(likelihood, cause, place, variants):
         for test in range(len(variants[0]))
     ]
     whitened = np.split(likelihood.whiten(stacked), np.cumsum(widths)[:-1], axis=1)
-    fitted = [
-        likelihood.amplitudes(rows, variant[0].scales, variant[0].positive)
-        for rows, variant in zip(whitened, variants, strict=True)
-    ]
-    gains = np.array([amplitudes.gain for amplitudes in fitted])
     fits = []
-    for variant, amplitudes in zip(variants, fitted, strict=True):
-        if amplitudes.gain > gains.max() - _NEGLIGIBLE:
-            first, columns = variant[0], [test.rows for test in variant]
-            scales = np.atleast_1d(first.scales or 1.0)
-            posterior = amplitudes.mean, amplitudes.covariance
-            fits.append(Fit(first.values, amplitudes.gain, columns, scales, *posterior, first.positive))
-    return Explanation(cause, place, float(mean_evidence(gains)), tuple(fits), gains)
+    for rows, (first, *others) in zip(whitened, variants, strict=True):
+        amplitudes = likelihood.amplitudes(rows, first.scales, first.positive)
+        columns, scales = [test.rows for test in (first, *others)], np.atleast_1d(first.scales or 1.0)
+        posterior = amplitudes.mean, amplitudes.covariance
+        fits.append(within(Fit(first.values, amplitudes.gain, columns, scales, *posterior, *first[3:])))
+    gains = np.array([fit.gain for fit in fits])
+    chosen = tuple(fit for fit in fits if fit.gain > gains.max() - _NEGLIGIBLE)
+    return Explanation(cause, place, float(mean_evidence(gains)), chosen, gains)
+
+
+def within(fit):
+    """A `Fit` whose size no structure exceeds: its evidence by the share of posterior and prior within, rows cut off.
+
+    With the prior cut off at ``most``, the evidence is multiplied by the ratio of both shares.
+    """
+    if not np.isfinite(fit.most):
+        return fit
+    size, deviation = fit.size
+    prior = float(np.sqrt(fit.contrast**2 @ fit.scales**2))
+    gain = fit.gain + _log_share(size, deviation, fit.most) - _log_share(0.0, prior, fit.most)
+    return replace(fit, gain=float(gain), mean=fit.mean * min(1.0, fit.most / max(abs(size), 1e-300)))
+
+
+def _log_share(mean, deviation, most):
+    """Logarithm of the chance that a Gaussian size lies between ``-most`` and ``most``."""
+    upper, lower = log_ndtr((most - abs(mean)) / deviation), log_ndtr((-most - abs(mean)) / deviation)
+    return upper + np.log1p(-np.exp(lower - upper))
 
 
 def single(cause, place, gain, columns, scale, fitted, values):

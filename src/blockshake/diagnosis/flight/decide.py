@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from blockshake.diagnosis.answer.answer import ODDS, coarsened, needed_of
+from blockshake.diagnosis.answer.answer import Rival, find_causes, needed_of, share_of
 from blockshake.diagnosis.answer.decide import chance, kind_of, probabilities
 from blockshake.diagnosis.answer.decision import Cause, Decision, Estimate, Part
 from blockshake.diagnosis.answer.size import FORM
@@ -20,8 +20,6 @@ from blockshake.forces.flight.impacts import find_impacts, summary
 from blockshake.forces.flight.inertia import seen_ratios
 from blockshake.forces.flight.paths import fallen
 
-MORE = 0.1  # of what the causes before it gain, that a further one needs besides
-MOST_CAUSES = 3  # causes
 _NINETY = 1.645  # standard deviations
 _READINGS = "free flight"
 
@@ -31,14 +29,6 @@ class DecidedFlights(NamedTuple):
 
     decision: Decision
     evidence: xr.Dataset
-
-
-class Stage(NamedTuple):
-    """One cause of a campaign: all rivals by falling gain, and those that are not told from the first."""
-
-    fits: list
-    alike: list
-    odds: dict
 
 
 def decide_flights(posed, without=()):
@@ -69,34 +59,41 @@ def decide_flights(posed, without=()):
         )  # fmt: skip
     impacts = find_impacts(posed, arcs)
     rows = flight_rows(posed, arcs)
-    stages, sound, beside, gained, hidden = [], [], rows, 0.0, None
-    while len(stages) < MOST_CAUSES:
-        known = [
-            *without,
-            *(fit.cause.name for fit in sound),
-            *(stage.fits[0].cause.name for stage in stages),
-        ]
-        fits = [explain(beside, cause) for cause in CAUSES if cause.name not in known]
-        fits.sort(key=lambda fit: -fit.gain)
-        if not fits or fits[0].gain < needed_of(fits[0].cause.name) + MORE * gained:
-            hidden = next((fit for fit in fits if fit.gain > needed_of(fit.cause.name)), None)
-            break
-        first = fits[0]
-        if first.size < first.cause.sound(posed):
+    beside, sound, stages = rows, [], []  # fits of every stage, by falling gain
+
+    def needed(cause, known):
+        return needed_of(cause) + share_of(known)
+
+    def ranked(known):
+        nonlocal beside
+        if known:
+            first = stages[-1][0]
+            beside = beside.beside(first, FORM if first.cause.name in FORMS else 0.0)
+        taken = {*without, *(one.cause for one in known), *(fit.cause.name for fit in sound)}
+        while fits := sorted(
+            (explain(beside, cause) for cause in CAUSES if cause.name not in taken), key=lambda fit: -fit.gain
+        ):
+            first = fits[0]
+            if first.gain < needed(first.cause.name, known) or first.size >= first.cause.sound(posed):
+                break
             sound.append(first)
+            taken.add(first.cause.name)
             beside = beside.beside(first, 0.0)
-            continue
-        gained += first.gain
-        odds = {fit.cause.name: float(coarsened(first.gain - fit.gain, first.gain)) for fit in fits}
-        alike = [fit for fit in fits if odds[fit.cause.name] < ODDS]
-        stages.append(Stage(fits, alike, odds))
-        beside = beside.beside(first, FORM if first.cause.name in FORMS else 0.0)
-    stages = [
-        stage._replace(alike=[rows.refitted(fit, [*sound, *_firsts(stages, stage)]) for fit in stage.alike])
-        for stage in stages
+        stages.append(fits)
+        return [Rival(fit.cause.name, posed.name, fit.gain, fit.gain, (posed.name,)) for fit in fits]
+
+    groups = find_causes(ranked, needed)
+    firsts = [fits[0] for fits in stages[: len(groups)]]
+    hidden = [fit for fits in stages[len(groups) :] for fit in fits if fit.gain > needed_of(fit.cause.name)]
+    alike = [
+        [
+            rows.refitted(fit, [*sound, *(first for first in firsts if first is not own)])
+            for fit in fits[: len(group.rivals)]
+        ]
+        for group, fits, own in zip(groups, stages, firsts, strict=False)
     ]
-    parts = tuple(_part(posed, stage) for stage in stages)
-    causes = [stage.alike[0] for stage in stages]
+    parts = tuple(_part(posed, group, fits) for group, fits in zip(groups, alike, strict=True))
+    causes = [fits[0] for fits in alike]
     share = explained_share(rows, causes) if causes else 0.0
     names = [test.name for test in posed.tests]
     mirrored = _gain_of_mirrored(posed, arcs, causes)
@@ -104,22 +101,17 @@ def decide_flights(posed, without=()):
         decision=kind_of(parts),
         parts=parts,
         probabilities=probabilities(parts, without),
-        limits=_limits(posed, rows, gained),
+        limits=_limits(posed, rows, share_of([group.rivals[0] for group in groups])),
         excluded_above={},
         p=min(1.0, sum(map(chance, parts))) if parts else 1.0,
-        where=f"free flight of {posed.name}" if stages else "no departure larger than chance",
+        where=f"free flight of {posed.name}" if groups else "no departure larger than chance",
         tests=names,
         silent=(),
         n_rows=sum(map(len, rows.values)),
         impacts=impact_words(summary(impacts)),
-        cannot_see=_not_seen(posed, broken, stages, share, rows, hidden, mirrored),
+        cannot_see=_not_seen(posed, broken, alike, share, rows, hidden[:1], mirrored),
     )
     return DecidedFlights(decision, _evidence(posed, rows, causes, impacts, broken, share))
-
-
-def _firsts(stages, own):
-    """Likeliest causes of all stages but one."""
-    return [stage.alike[0] for stage in stages if stage is not own]
 
 
 def _gain_of_mirrored(posed, arcs, causes):
@@ -142,24 +134,23 @@ def _gain_of_mirrored(posed, arcs, causes):
     return max(map(gain, mirrors)) - gain(np.ones(3))
 
 
-def _part(posed, stage):
+def _part(posed, group, fits):
     causes = tuple(
         Cause(
             name=fit.cause.name,
             place={"body": posed.name},
             places=(posed.name,),
             gain=fit.gain,
-            odds=stage.odds[fit.cause.name],
+            odds=group.odds[fit.cause.name],
             parameters=_sizes(posed, fit),
             members=(
                 {name: float(size) for (name, _), size in zip(fit.cause.sizes, fit.sizes, strict=True)},
             ),
             amplitudes=fit.sizes.tolist(),
         )
-        for fit in stage.alike
+        for fit in fits
     )
-    gains = {fit.cause.name: fit.gain for fit in stage.fits}
-    return Part(readings=_READINGS, causes=causes, odds=stage.odds, gains=gains)
+    return Part(readings=_READINGS, causes=causes, odds=group.odds, gains=group.gains)
 
 
 def _sizes(posed, fit):
@@ -180,7 +171,7 @@ def _sizes(posed, fit):
     return found
 
 
-def _limits(posed, rows, gained):
+def _limits(posed, rows, more):
     """Sizes of effects of the registry along the filmed directions from which on they would have been named."""
     found = {}
     for cause in CAUSES:
@@ -191,17 +182,18 @@ def _limits(posed, rows, gained):
         seen = deviations[deviations < 0.9 * scale]  # the others are not filmed
         if len(seen):
             # the gain of a size m: m^2 / (2 d^2) - ln(scale / d)
-            needed = needed_of(cause.name) + MORE * gained + np.log(scale / seen).sum()
+            needed = needed_of(cause.name) + more + np.log(scale / seen).sum()
             found[cause.name] = {
                 posed.name: max(float(np.sqrt(2.0 * needed) * seen.max()), cause.sound(posed))
             }
     return found
 
 
-def _not_seen(posed, broken, stages, share, rows, hidden, mirrored):
+def _not_seen(posed, broken, alike, share, rows, hidden, mirrored):
     """Lines on what the poses do not show.
 
-    ``hidden``: a cause that the share of the named ones hides, or None; ``mirrored``: see `_gain_of_mirrored`.
+    ``alike``: by cause, the fits that are not told apart; ``hidden``: the one that the share of the named ones hides,
+    or none; ``mirrored``: see `_gain_of_mirrored`.
     """
     lines = [
         f"{len(rows.arcs)} free flights lie {1e3 * rows.noise:.3g} mm about cubics, in the root mean square"
@@ -213,26 +205,26 @@ def _not_seen(posed, broken, stages, share, rows, hidden, mirrored):
     silent = [test.name for test in posed.tests if test.name not in {arc.test for arc in rows.arcs}]
     if silent:
         lines.append(f"no free flight was read in {', '.join(silent)}")
-    if stages:
+    if alike:
         lines.append(f"the causes explain {100.0 * share:.0f} % of what the flights have beyond noise")
-    if hidden:
-        lines.append(
-            f"beside them {hidden.cause.title} gains {hidden.gain:.0f} nats, less than a tenth of what they "
-            "gain, and is not named"
-        )
+    lines += [
+        f"beside them {fit.cause.title} gains {fit.gain:.0f} nats, less than a tenth of what they gain, and is not "
+        "named"
+        for fit in hidden
+    ]
     lines.append(_inertia_words(seen_ratios(posed, rows.arcs)))
     if mirrored > needed_of("eccentricity"):
         lines.append(
             f"rotations of the other hand would explain the flights better, by {mirrored:.0f} nats: the signs of the "
             "angles, or of a horizontal axis, are to be checked"
         )
-    for stage in stages:
-        if len(stage.alike) > 1:
+    for fits in alike:
+        if len(fits) > 1:
             lines.append(
                 "free flight does not tell these apart: "
-                + "; ".join(f"{fit.cause.title} ({_size_words(posed, fit)})" for fit in stage.alike)
+                + "; ".join(f"{fit.cause.title} ({_size_words(posed, fit)})" for fit in fits)
             )
-        lines += [fit.cause.alias for fit in stage.alike if fit.cause.alias]
+        lines += [fit.cause.alias for fit in fits if fit.cause.alias]
     if any(test.planar for test in posed.tests):
         lines.append("the motion was filmed in one plane: nothing across it is known")
     return tuple(lines)

@@ -5,10 +5,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from blockshake.diagnosis.answer.answer import ODDS, coarsened, needed_of
+from blockshake.diagnosis.answer.answer import Rival, find_causes, needed_of, share_of
 from blockshake.diagnosis.answer.decide import chance, kind_of, probabilities
 from blockshake.diagnosis.answer.decision import MEMBERS, Cause, Decision, Estimate, Part
-from blockshake.diagnosis.flight.decide import MORE, MOST_CAUSES
 from blockshake.diagnosis.outcomes.posterior import (
     fitted_curve,
     load_outcomes,
@@ -58,24 +57,21 @@ def decide_outcomes(campaign, files, without=()):
             weighed[key] = posterior(outcomes, rows, fell, key)
         return weighed[key]
 
-    stages, gained = [], 0.0
-    while len(stages) < MOST_CAUSES:
-        known = [next(iter(stage)) for stage in stages]
+    def ranked(known):
+        acting = [one.cause for one in known]
         gains = {
-            cause: weigh([*known, cause]).evidence - weigh(known).evidence
+            cause: weigh([*acting, cause]).evidence - weigh(acting).evidence
             for cause in CAUSES
-            if cause not in known and cause not in without
+            if cause not in acting and cause not in without
         }
-        gains = dict(sorted(gains.items(), key=lambda one: -one[1]))
-        first = next(iter(gains), None)
-        if first is None or gains[first] < needed_of(first) + MORE * gained:
-            break
-        gained += gains[first]
-        stages.append(gains)
-    firsts = [next(iter(stage)) for stage in stages]
+        rivals = [Rival(cause, name, gain, gain, (name,)) for cause, gain in gains.items()]
+        return sorted(rivals, key=lambda one: -one.gain)
+
+    groups = find_causes(ranked, lambda cause, known: needed_of(cause) + share_of(known))
+    firsts = [group.rivals[0].cause for group in groups]
     parts = tuple(
-        _part(name, extent, gains, [other for other in firsts if other != own], weigh)
-        for gains, own in zip(stages, firsts, strict=True)
+        _part(name, extent, group, [other for other in firsts if other != own], weigh)
+        for group, own in zip(groups, firsts, strict=True)
     )
     chances = {
         "nominal": prior(outcomes).chance(outcomes, rows),
@@ -121,11 +117,9 @@ def predicted(outcomes, names, fell, chances):
     )
 
 
-def _part(body, extent, gains, others, weigh):
-    first = next(iter(gains))
-    odds = {cause: float(coarsened(gains[first] - gain, gains[first])) for cause, gain in gains.items()}
+def _part(body, extent, group, others, weigh):
     causes = []
-    for cause in (cause for cause in gains if odds[cause] < ODDS):
+    for cause in (rival.cause for rival in group.rivals):
         found, own = weigh([*others, cause]), unknowns_of([cause])
         parameters, values = {}, []
         for number in own:
@@ -139,14 +133,14 @@ def _part(body, extent, gains, others, weigh):
                 name=cause,
                 place={"body": body},
                 places=(body,),
-                gain=gains[cause],
-                odds=odds[cause],
+                gain=group.gains[cause],
+                odds=group.odds[cause],
                 parameters=parameters,
                 members=tuple(dict(zip(names, map(float, row), strict=True)) for row in np.transpose(values)),
                 amplitudes=[estimate.estimate for estimate in parameters.values()],
             )
         )
-    return Part(readings=_READINGS, causes=tuple(causes), odds=odds, gains=gains)
+    return Part(readings=_READINGS, causes=tuple(causes), odds=group.odds, gains=group.gains)
 
 
 def _not_seen(outcomes, names, telling, chances, fell):

@@ -1,12 +1,19 @@
-"""Edges of one joint that change: in one test, or from an instant of a test on, and in the tests after it."""
+"""Edges of one joint that change: in one test, or from an instant of a test on, at once or as they crush under load."""
+
+from dataclasses import replace
 
 import numpy as np
+from scipy.linalg import solve_triangular
+from scipy.optimize import nnls
+from scipy.special import logsumexp
 
 from blockshake.diagnosis.evidence.explanation import mean_evidence, single
 from blockshake.diagnosis.outside.form import Form
 
 _STARTS_EVERY = 0.5  # s
 _INSET_SCALE = 0.05  # m
+_STEP_SCALE = 0.02  # m, by which an edge that crushes goes further in each time that it bears
+_APART = 0.1  # s, without which it bears on
 _NEVER = -1e3  # nats
 
 
@@ -33,14 +40,56 @@ def explain_changed_edge(likelihood, tests, place, key):
     gain = np.where(mean < widest, gain, _NEVER)  # an edge lies on its face
     best = int(np.argmax(gain))
     changed, start, lasts, edge = tried[best]
-    yield single(
-        "changed-edge", place, mean_evidence(gain), [rows[best] for rows in columns], _INSET_SCALE,
-        (float(mean[best]), float(deviation[best])),
-        {
-            "test": tests[changed].seen.name, "start": start, "lasts": lasts, "edge": edge,
-            "before": [other.seen.name for other in tests[:changed]], "tangent": key[1],
-        },
-    )  # fmt: skip
+    values = _values(tests, key, changed, start, lasts, edge)
+    fitted = float(mean[best]), float(deviation[best])
+    rows = [rows[best] for rows in columns]
+    at_once = single("changed-edge", place, mean_evidence(gain), rows, _INSET_SCALE, fitted, values)
+    tried = [(number, side) for number in range(len(tests)) for side in (1, -1)]
+    crushed = [
+        one for number, side in tried for one in _crushed(likelihood, tests, place, key, number, side, widest)
+    ]
+    gains = [at_once.gain, *(one.gain - np.log(len(crushed)) for one in crushed)]
+    found = replace(
+        max([at_once, *crushed], key=lambda one: one.gain), gain=float(logsumexp(gains) - np.log(2.0))
+    )
+    yield found
+
+
+def _crushed(likelihood, tests, place, key, changed, edge, widest):
+    """`Explanation` of one edge that goes further in when it bears in one test, and stays so; none where it bears once.
+
+    The steps, from one time that the edge bears to the next, are at their best with none of them back.
+    """
+    test, hinge = tests[changed], tests[changed].hinges.get(key)
+    time = test.rows.time[(hinge.edge == edge) & (hinge.inward != 0.0)] if hinge else np.zeros(0)
+    begins = time[np.diff(time, prepend=-np.inf) > _APART]
+    if len(begins) < 2:
+        return
+    columns = [
+        np.stack([_rows(other, key, edge, number, changed, begin, True) for begin in begins], axis=1)
+        for number, other in enumerate(tests)
+    ]
+    scales = np.array([_INSET_SCALE, *[_STEP_SCALE] * (len(begins) - 1)])
+    target, gram = likelihood.normal_equations(likelihood.whiten(columns))
+    precision = gram + np.diag(scales**-2.0)
+    root = np.linalg.cholesky(precision)
+    steps = nnls(root.T, solve_triangular(root, target, lower=True))[0]
+    inset = float(steps.sum())
+    if not 0.0 < inset < widest:
+        return
+    gain = target @ steps - 0.5 * steps @ precision @ steps
+    gain -= 0.5 * np.linalg.slogdet(np.eye(len(scales)) + gram * scales**2)[1]
+    fitted = inset, inset * float(steps @ precision @ steps) ** -0.5
+    values = _values(tests, key, changed, float(begins[0]), True, edge) | {"crushed": True}
+    rows = [column @ steps / inset for column in columns]
+    yield single("changed-edge", place, gain, rows, _INSET_SCALE, fitted, values)
+
+
+def _values(tests, key, changed, start, lasts, edge):
+    """Values of a change from a start in the test of a number on."""
+    before = [test.seen.name for test in tests[:changed]]
+    one = {"test": tests[changed].seen.name, "start": start, "lasts": lasts, "edge": edge}
+    return one | {"before": before, "tangent": key[1]}
 
 
 def _rows(test, key, edge, number, changed, start, lasts):

@@ -119,7 +119,7 @@ def _values(explanation):
     if explanation is None:
         return {}
     fit, effect = explanation.best, EFFECTS.get(explanation.cause)
-    size = float(fit.contrast @ fit.mean) if len(fit.mean) else 0.0  # a blow may be in no test
+    size = fit.size[0] if len(fit.mean) else 0.0  # a blow may be in no test
     if effect is None:
         return {"size": size, **fit.values}
     read = effect.reads(fit.values, np.array([size]), 0.0)

@@ -22,7 +22,7 @@ def _columns(seen, place):
     for index, face in enumerate(seen.faces):
         towards = seen.states.slip[seen.rows.instant, index]
         rows += face.friction * towards * seen.rows.along(friction_against_slip(seen, index))
-    return [Columns({}, rows[:, None], (_SCALE,), False)]
+    return [Columns({}, rows[:, None], (_SCALE,), False, 1.0)]
 
 
 EFFECT = Effect(

@@ -29,7 +29,9 @@ def drop_columns(seen, history, scales):
     full = [f.friction * seen.rows.along(friction_against_slip(seen, i)) for i, f in enumerate(seen.faces)]
     drops = (1.0 - np.exp(-history[seen.rows.instant] / scale) for scale in scales)
     return [
-        Columns({"scale": scale}, -(np.stack(full, axis=1) * drop).sum(axis=1)[:, None], (_SCALE,), True)
+        Columns(
+            {"scale": scale}, -(np.stack(full, axis=1) * drop).sum(axis=1)[:, None], (_SCALE,), True, _MOST
+        )
         for scale, drop in zip(scales, drops, strict=True)
     ]
 

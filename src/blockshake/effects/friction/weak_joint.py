@@ -18,7 +18,7 @@ def _act(experiment, values, place):
 def _columns(seen, place):
     face = face_of(seen, place)
     lost = -seen.faces[face].friction * seen.rows.along(friction_against_slip(seen, face))
-    return [Columns({}, lost[:, None], (_SCALE,), True)]
+    return [Columns({}, lost[:, None], (_SCALE,), True, 1.0)]
 
 
 EFFECT = Effect(

@@ -5,6 +5,8 @@ joints do: the body seems to slip on the one below by the gain's share of its di
 on it by as much the other way, also while both are closed. No friction slips so.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrices
@@ -18,10 +20,12 @@ from blockshake.parity.regression import Size, regression
 _EVERY = 0.05  # s, between readings that are compared
 _TOLERANCE = 0.002  # of a gain
 _MOST_SLIP = 0.4  # share of every joint's slip that the gain may leave
+_MOST_OF_ONE = 0.05  # the same of a body with one joint: of a real slip alone 0.8 or more are left
+_LARGEST = 0.3  # a body that slides slips by as much as it moves
 _SEEN = 3.0  # standard deviations: of a slip worth a look
-_FEWEST_JOINTS = 2  # a slip of one joint alone may be one
 _FLAT = 1e-4  # m2: markers that are nearly level, or nearly upright, show no turn by one axis
 _SHARP = 0.01  # standard error of a gain along z that is taken over
+_ROUNDS = 3  # of finding the gains again
 _REST = 10  # readings, whose mean counts as rest
 
 
@@ -41,13 +45,12 @@ def body_gains(structure, tests, sensors, level):
     The gain is the regression of the slips along x on the body's displacement since rest, over all its joints and
     tests; its standard error comes from the scatter of the scores of segments of half a second. The gain along z
     follows from that along x and from the turn about y, which readings along x and readings along z show each by
-    themselves; of a body that hardly turns it is taken as none.
+    themselves; of a body that hardly turns it is taken as none. The turn is misread too, and moves the joints' points:
+    both gains are found again from the readings that they correct.
     """
     if not structure.touching.any():
         return []
-    seen = [
-        slips for slips in (_slips(structure, test, sensors) for test in tests.values()) if slips is not None
-    ]
+    seen = _all_slips(structure, tests.values(), sensors)
     pairs, findings = find_joints(structure)[0], []
     for body, name in enumerate(structure.body_names):
         gain = _gain(pairs, body, seen)
@@ -59,8 +62,29 @@ def body_gains(structure, tests, sensors, level):
         if p < level.chance:
             markers = tuple(marker.name for marker in structure.file.markers if marker.body == name)
             covariance = np.diag([variance, _TOLERANCE**2, across_variance])
-            findings.append(GAIN.finding(markers, p, tests, [along, 0.0, across], covariance))
-    return sorted(findings, key=lambda finding: finding.p)[:1]
+            findings.append((GAIN.finding(markers, p, tests, [along, 0.0, across], covariance), body))
+    # a body that accounts for the slips of two joints before one that accounts for one of them
+    findings.sort(key=lambda found: (-np.sum(np.equal(pairs, found[1])), found[0].p))
+    return [_refined(*found, structure, tests, sensors) for found in findings[:1]]
+
+
+def _refined(finding, body, structure, tests, sensors):
+    """The finding on a body with the gains that leave no further one in the readings that it corrects."""
+    pairs = find_joints(structure)[0]
+    for _ in range(_ROUNDS):
+        again = [test.transpose("time", "marker", "axis", ...).copy(deep=True) for test in tests.values()]
+        for test in again:
+            GAIN.correct(test, [finding], structure)
+        share = _share(_of_joints(pairs, body, _all_slips(structure, again, sensors)))
+        along = share.estimate[0] / (1.0 - share.estimate[0])
+        across, _ = _gain_across(structure, again, body, sensors, along)
+        estimate = (1.0 + finding.estimate) * (1.0 + np.array([along, 0.0, across])) - 1.0
+        finding = replace(finding, estimate=estimate)
+    return finding
+
+
+def _all_slips(structure, tests, sensors):
+    return [slips for slips in (_slips(structure, test, sensors) for test in tests) if slips is not None]
 
 
 def _slips(structure, test, sensors):
@@ -83,8 +107,8 @@ def _slips(structure, test, sensors):
     return slip, moved, np.sqrt(poses.covariance[:, 0, 0]), time - time[0]
 
 
-def _gain(pairs, body, seen):
-    """Gain of a body by all its joints and tests, `Size`; None where it does not explain every joint."""
+def _of_joints(pairs, body, seen):
+    """Of every joint of a body: parts of the regression of its slip, and its noise [m]."""
     joints = []
     for joint, pair in enumerate(pairs):
         if body in pair and seen:
@@ -94,17 +118,29 @@ def _gain(pairs, body, seen):
                 rows = rows[np.isfinite(rows).all(axis=1)]
                 known.append((rows[:, :1], rows[:, 1], rows[:, 2]))
             joints.append((known, np.hypot(*seen[0][2][pair])))
-    if len(joints) < _FEWEST_JOINTS:
-        return None
-    share = regression([part for known, _ in joints for part in known], SEGMENT)
+    return joints
+
+
+def _share(joints):
+    """Slip over the body's displacement, `Size` or None."""
+    return regression([part for known, _ in joints for part in known], SEGMENT) if joints else None
+
+
+def _gain(pairs, body, seen):
+    """Gain of a body by all its joints and tests, `Size`; None where it does not explain every joint."""
+    joints = _of_joints(pairs, body, seen)
+    share = _share(joints)
     if share is None:
         return None
     ratio = share.estimate[0]  # reading over truth, less 1, over the reading
+    if abs(ratio) > _LARGEST:
+        return None
+    most = _MOST_SLIP if len(joints) > 1 else _MOST_OF_ONE
     for known, noise in joints:
         slip = np.concatenate([slip for _, slip, _ in known])
         rest = np.concatenate([slip - ratio * moved[:, 0] for moved, slip, _ in known])
         size = (slip**2).mean()
-        if not size > (_SEEN * noise) ** 2 or (rest**2).mean() > _MOST_SLIP * size:
+        if not size > (_SEEN * noise) ** 2 or (rest**2).mean() > most * size:
             return None
     return Size(share.estimate / (1.0 - ratio), share.covariance / (1.0 - ratio) ** 4, share.freedom)
 

@@ -7,6 +7,7 @@ from blockshake.parity.regression import Size, regression
 
 _REST = 0.1  # s, whose mean is an accelerometer's reading at rest
 _TOLERANCE = 1e-2  # of an accelerometer's calibration
+_VARIES = 0.3  # of a gain of markers, by which it may vary with the displacement
 _CROSS_SPREAD = 1e-2  # rad, by which a sensor's axes may be turned
 SEGMENT = 0.5  # s; longer than the kernels, so that segments are independent
 
@@ -72,10 +73,13 @@ def _slope(parts):
     return None if slope is None else slope.part(0)
 
 
-def gain_findings(gains, tests, level):
-    """Gains of channels, as of `channel_gains`, beyond their tolerance: list of Finding."""
+def gain_findings(gains, tests, level, unsure):
+    """Gains of channels, as of `channel_gains`, beyond their tolerance: list of Finding.
+
+    ``unsure`` has by channel the gain that the markers of its body had: it may vary with the displacement.
+    """
     return [
         finding
         for name, gain in gains.items()
-        for finding in gain.finding(GAIN, (name,), tests, _TOLERANCE, level)
+        for finding in gain.finding(GAIN, (name,), tests, _TOLERANCE + _VARIES * unsure.get(name, 0.0), level)
     ]
