@@ -232,11 +232,9 @@ def _pose_columns(source, body, keys, asked, where):
     places = [f"{body}.{axis}" for axis in AXES]
     turns = [f"{body}.{ANGLE}", *(f"{body}.{part}" for part in _TURNS)]
     for key in keys:
-        if key in turns[1:] and (
-            asked.columns[key].reversed or asked.columns[key].unit or asked.rotation_unit != "rad"
-        ):
-            wrong = "expected a quaternion's column as it is, without unit or reversed"
-            raise InputError(where, f"columns.{key}", wrong)
+        if key in turns[1:] and (asked.columns[key].unit or asked.rotation_unit != "rad"):
+            raise InputError(where, f"columns.{key}", "expected a quaternion's column without unit")
+    _check_frame(body, keys, asked, where)
     columns = {}
     for names, kind in ((places, "displacement"), (turns, "rotation")):
         mapped = [name for name in names if name in keys]
@@ -245,6 +243,43 @@ def _pose_columns(source, body, keys, asked, where):
         time, values = _columns_of(source, mapped, asked, kind, where)
         columns |= dict(zip(mapped, values.T, strict=True))
     return time, columns
+
+
+def _check_frame(body, keys, asked, where):
+    """Refuse a map whose places and quaternions do not turn together from the file's frame into x, y, z.
+
+    A map of places is a signed permutation of the file's axes, which the last letters of the columns name. The map is
+    a frame where its determinant is 1, and the vector part of a quaternion then has the same map.
+    """
+    places, turns = ([f"{body}.{part}{axis}" for axis in AXES] for part in ("", "q"))
+    if not {*places, *turns, f"{body}.qw"} <= set(keys):
+        return
+    place, turn = (_signed_axes([asked.columns[key] for key in names]) for names in (places, turns))
+    conjugate = 1 - 2 * asked.columns[f"{body}.qw"].reversed
+    if not place.any() or not turn.any():  # letters that are no axes: signs alone
+        place, turn = (
+            np.diag([1 - 2 * asked.columns[key].reversed for key in names]) for names in (places, turns)
+        )
+        place = (
+            conjugate * turn if np.array_equal(place, -conjugate * turn) else place
+        )  # an odd exchange of axes, perhaps
+    elif np.linalg.det(place) < 0.0:
+        wrong = "expected axes that make a right-handed frame; the map mirrors: reverse one of them"
+        raise InputError(where, f"columns.{body}.y", wrong)
+    differs = np.flatnonzero((place != conjugate * turn).any(axis=1))
+    if len(differs):
+        axis = AXES[differs[0]]
+        wrong = f"expected the axis and the sign of {body}.{axis}: places and rotations turn together"
+        raise InputError(where, f"columns.{body}.q{axis}", wrong)
+
+
+def _signed_axes(columns):
+    """Signed permutation (3, 3) by the last letters of three columns; zeros where these are not x, y and z."""
+    letters = [column.column.strip()[-1:].lower() for column in columns]
+    if sorted(letters) != list(AXES):
+        return np.zeros((3, 3))
+    signs = [1 - 2 * column.reversed for column in columns]
+    return np.diag(signs) @ np.eye(3)[[AXES.index(letter) for letter in letters]]
 
 
 def _check_once(names, asked, where):
