@@ -201,8 +201,8 @@ def test_a_track_record_of_an_earlier_program_is_called_so(fakes, pages):
 def test_track_record_prints_the_worst_laboratory_of_every_share_with_a_goal(pages, documents):
     (table,) = blocks_of(documents["named"], "table", "track-record")
     assert [(row[0], row[1], row[3], row[-1]) for row in table.rows] == [
-        ("clean campaigns called an effect", "mujoco", "1 of 30", "met"),
-        ("truth named or in the set", "mujoco", "4 of 6", "missed"),
+        ("clean campaigns called an effect", "MuJoCo", "1 of 30", "met"),
+        ("truth named or in the set", "MuJoCo", "4 of 6", "missed"),
     ]
     assert any(
         "1/4 of its cases" in block.text for block in blocks_of(documents["named"], "text", "track-record")

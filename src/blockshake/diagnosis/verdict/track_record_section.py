@@ -5,6 +5,7 @@ from blockshake.pages.blocks import Section, Table, Text
 from blockshake.pages.wording import percent
 
 _MET = {True: "met", False: "missed"}
+_LABORATORIES = {"home": "own solvers", "mujoco": "MuJoCo", "unusual": "own solvers, unusual settings"}
 
 
 def track_record_section(diagnosed):
@@ -36,7 +37,7 @@ def _shares(record):
     rows = []
     for laboratory, one in record.worst.values():
         rows.append((
-            one.meaning, laboratory, f"{percent(one.estimate)} %", f"{one.hits} of {one.n}",
+            one.meaning, _LABORATORIES.get(laboratory, laboratory), f"{percent(one.estimate)} %", f"{one.hits} of {one.n}",
             f"{percent(one.lower)} to {percent(one.upper)} %",
             f"{one.side} {percent(one.goal)} %", _MET.get(one.met, ""),
         ))  # fmt: skip
