@@ -37,8 +37,8 @@ def _shares(record):
     rows = []
     for laboratory, one in record.worst.values():
         rows.append((
-            one.meaning, _LABORATORIES.get(laboratory, laboratory), f"{percent(one.estimate)} %", f"{one.hits} of {one.n}",
-            f"{percent(one.lower)} to {percent(one.upper)} %",
+            one.meaning, _LABORATORIES.get(laboratory, laboratory), f"{percent(one.estimate)} %",
+            f"{one.hits} of {one.n}", f"{percent(one.lower)} to {percent(one.upper)} %",
             f"{one.side} {percent(one.goal)} %", _MET.get(one.met, ""),
         ))  # fmt: skip
     return Table(
