@@ -122,3 +122,12 @@ def test_the_command_writes_a_schema_that_is_one(tmp_path, capsys):
         printed = capsys.readouterr().out
         assert (tmp_path / "s.json").read_text() == printed
         jsonschema.Draft202012Validator.check_schema(json.loads(printed))
+
+
+def test_a_folder_that_is_neither_a_campaign_nor_records_is_called_so(tmp_path, capsys):
+    (tmp_path / "notes.txt").write_text("no motion\n")
+    assert main(["check", str(tmp_path)]) == 2
+    assert (
+        "expected a campaign, or a folder of records alone; it has no campaign.yaml"
+        in capsys.readouterr().err
+    )

@@ -148,3 +148,11 @@ def test_wrong_parameters_are_named(parameters, words):
 def test_unknown_model_is_refused_by_name():
     with pytest.raises(InputError, match=f"expected one of {', '.join(MODELS)}, not 'nscd-plastic'"):
         simulate("configuration-1", SHAKE, "nscd-plastic")
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("duration", "3 s"), ("time_step", "1e-4"), ("output_rate", [200])]
+)
+def test_an_argument_that_is_no_number_is_refused_by_its_name(name, value):
+    with pytest.raises(InputError, match=f"{name}: expected a number, not"):
+        simulate("configuration-1", "alkion", "nscd-rigid", **{name: value})

@@ -61,7 +61,13 @@ def check(source: AnyPath | Structure | GroundMotion, baseline: str | float = AU
     if (Path(source) / "campaign.yaml").is_file():
         return _campaign_line(Path(source))
     if is_record_set(source):
-        return "\n".join(_motion_line(record.path, baseline) for record in read_records(source))
+        try:
+            return "\n".join(_motion_line(record.path, baseline) for record in read_records(source))
+        except InputError as error:
+            if not Path(source).is_dir():
+                raise
+            wrong = f"expected a campaign, or a folder of records alone; it has no campaign.yaml, and {error}"
+            raise InputError(source, "", wrong) from None
     if Path(source).suffix not in (".yaml", ".yml"):
         return _motion_line(source, baseline)
     keys = load_yaml(source).keys()

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from numbers import Real
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -212,6 +213,9 @@ def _set_up(
     time_step = solver.time_step if time_step is None else time_step
     duration = motion.duration if duration is None else duration
     output_rate = RATE if output_rate is None else output_rate
+    for name, value in (("time_step", time_step), ("duration", duration), ("output_rate", output_rate)):
+        if not isinstance(value, Real):
+            raise InputError(Argument(name), "", f"expected a number, not {value!r}")
     fine = np.empty(0)
     sensed = accelerometers and has_fine_record(built)
     check_limits(built, model, time_step, duration, output_rate, sensed, in_memory)
