@@ -126,16 +126,19 @@ def test_functions_of_the_package_are_no_modules(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("decision", "causes", "word", "line"),
+    ("decision", "causes", "outside", "word", "line"),
     [
-        ("none", (), NOTHING, "no misfit larger than chance"),
-        ("unknown", (), UNKNOWN, "something acts, cause unknown"),
-        ("named", ("weak-joint",), PROBABLE, "probable (named): weak-joint"),
-        ("ambiguous", ("weak-joint", "table-pitch"), ONE_OF, "one of (ambiguous): weak-joint, table-pitch"),
+        ("none", (), None, NOTHING, "no misfit larger than chance"),
+        ("unknown", (), "a rope", UNKNOWN, "something acts, cause unknown: a rope"),
+        ("named", ("weak-joint",), None, PROBABLE, "probable (named): weak-joint"),
+        ("ambiguous", ("a", "b"), None, ONE_OF, "one of (ambiguous): a, b"),
+        ("ambiguous", ("stopper-contact",), "a rope", ONE_OF, "one of (ambiguous): stopper-contact, a rope"),
+        ("combination", ("clock-lag",), "a push", PROBABLE, "probable (combination): clock-lag, a push"),
     ],
 )
-def test_the_last_line_says_the_verdict(tmp_path, capsys, monkeypatch, decision, causes, word, line):
-    told = SimpleNamespace(decision=decision, causes=causes, word=word)
+def test_the_last_line_says_the_verdict(tmp_path, capsys, monkeypatch, decision, causes, outside, word, line):
+    form = outside and SimpleNamespace(title=outside)
+    told = SimpleNamespace(decision=decision, causes=causes, word=word, outside=form)
     monkeypatch.setattr(run_diagnosis, "diagnose", lambda *arguments: told)
     assert main(["diagnose", str(CAMPAIGN), "--output", str(tmp_path)]) == 0
     assert capsys.readouterr().out.splitlines()[-1] == f"{line}; {tmp_path}/report.html"

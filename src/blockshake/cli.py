@@ -384,7 +384,9 @@ def _diagnose(options):
     from blockshake.run_diagnosis import diagnose
 
     verdict = diagnose(options.campaign, options.output, options.effort, options.cores)
-    named = f" ({verdict.decision}): {', '.join(verdict.causes)}" if verdict.causes else ""
+    acting = [*verdict.causes, *([verdict.outside.title] if verdict.outside else [])]
+    kind = f" ({verdict.decision})" if verdict.causes else ""
+    named = f"{kind}: {', '.join(acting)}" if acting else ""
     print(f"{verdict.word}{named}; {options.output}/report.html")
 
 

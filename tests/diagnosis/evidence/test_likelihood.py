@@ -8,7 +8,7 @@ from scipy.stats import multivariate_normal, norm
 from blockshake.diagnosis.answer.size import size_of
 from blockshake.diagnosis.evidence.explanation import best_of
 from blockshake.diagnosis.evidence.likelihood import from_rows
-from blockshake.diagnosis.evidence.stop_search import _gains_of_pairs
+from blockshake.diagnosis.evidence.stop_search import _gains_of_pairs, explain_stops
 from blockshake.effects.effect import Columns
 
 
@@ -141,3 +141,21 @@ def test_two_causes_beside_each_other_have_the_sizes_of_their_joint_posterior(pr
         alone = beside.amplitudes(beside.whiten(own), np.array([scales[0]]))
         assert alone.mean[0] == pytest.approx(pair.mean[number])
         assert alone.covariance[0, 0] == pytest.approx(pair.covariance[number, number])
+
+
+@pytest.mark.parametrize(("gap", "is_stop"), [(0.002, False), (0.02, True)])
+def test_a_stop_with_the_smallest_gaps_on_both_sides_is_a_spring(gap, is_stop):
+    moved = 0.05 * np.sin(np.linspace(0.0, 20.0, 200))
+    gaps = (0.002, 0.01, 0.02)
+
+    def force(side, clear):
+        return -side * np.maximum(side * moved - clear, 0.0)
+
+    variants = [
+        [Columns({"gap": one, "side": side}, force(side, one)[:, None], (1e7,), True)]
+        for side in (1, -1)
+        for one in gaps
+    ]
+    value = 1e6 * (force(1, gap) + force(-1, gap))
+    likelihood = from_rows([1e4 * np.eye(200)], [value], [])
+    assert (explain_stops(likelihood, "block-1", variants).gain > 0.0) == is_stop

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from scipy.special import log_ndtr, logsumexp
 
+NEVER = -1e3  # nats, of what cannot be
 _NEGLIGIBLE = 12.0  # nats below the best variant
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.special import log_ndtr
 
-from blockshake.diagnosis.evidence.explanation import Explanation, Fit, mean_evidence
+from blockshake.diagnosis.evidence.explanation import NEVER, Explanation, Fit, mean_evidence
 from blockshake.diagnosis.evidence.likelihood import gain_of_one
 
 _NEGLIGIBLE = 8.0  # nats below the best gaps
@@ -12,7 +12,8 @@ _NEGLIGIBLE = 8.0  # nats below the best gaps
 def explain_stops(likelihood, place, variants):
     """`Explanation` of springs beyond gaps at one point.
 
-    ``variants`` are `Columns` by gap and test, all of the side of +x first.
+    ``variants`` are `Columns` by gap and test, all of the side of +x first, from the smallest gap on. Where the
+    smallest on both sides are best it is no stop but a spring to either side: its evidence is none.
     """
     half = len(variants) // 2
     rows = [np.concatenate([one[test].rows for one in variants], axis=1) for test in range(len(variants[0]))]
@@ -22,13 +23,14 @@ def explain_stops(likelihood, place, variants):
     both, _ = _gains_of_pairs(target, gram, half, scale)
     sides = [mean_evidence(alone[:half]), mean_evidence(alone[half:]), mean_evidence(both)]
     best = max(alone.max(), both.max())
+    spring = best > _NEGLIGIBLE and both[0, 0] == best
     chosen = [([index], gain) for index, gain in enumerate(alone) if gain > best - _NEGLIGIBLE]
     chosen += [
         ([first, half + second], both[first, second])
         for first, second in np.argwhere(both > best - _NEGLIGIBLE)
     ]
     fits = tuple(_fit(index, gain, target, gram, scale, rows, variants) for index, gain in chosen)
-    return Explanation("stopper-contact", place, float(mean_evidence(sides)), fits)
+    return Explanation("stopper-contact", place, NEVER if spring else float(mean_evidence(sides)), fits)
 
 
 def _fit(index, gain, target, gram, scale, rows, variants):

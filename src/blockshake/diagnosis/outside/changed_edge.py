@@ -7,14 +7,13 @@ from scipy.linalg import solve_triangular
 from scipy.optimize import nnls
 from scipy.special import logsumexp
 
-from blockshake.diagnosis.evidence.explanation import mean_evidence, single
+from blockshake.diagnosis.evidence.explanation import NEVER, mean_evidence, single
 from blockshake.diagnosis.outside.form import Form
 
 _STARTS_EVERY = 0.5  # s
 _INSET_SCALE = 0.05  # m
 _STEP_SCALE = 0.02  # m, by which an edge that crushes goes further in each time that it bears
 _APART = 0.1  # s, without which it bears on
-_NEVER = -1e3  # nats
 
 
 def explain_changed_edge(likelihood, tests, place, key):
@@ -37,7 +36,7 @@ def explain_changed_edge(likelihood, tests, place, key):
     whitened = likelihood.whiten([np.stack(rows, axis=1) for rows in columns])
     gain, mean, deviation = likelihood.single(whitened, _INSET_SCALE, positive=True)
     widest = 0.5 * float(np.ptp(tests[0].seen.faces[key[0]].corners[:, key[1]]))
-    gain = np.where(mean < widest, gain, _NEVER)  # an edge lies on its face
+    gain = np.where(mean < widest, gain, NEVER)  # an edge lies on its face
     best = int(np.argmax(gain))
     changed, start, lasts, edge = tried[best]
     values = _values(tests, key, changed, start, lasts, edge)

@@ -111,7 +111,8 @@ class Verdict(Shown, Strict):
     )
 
     def _words(self):
-        return ", ".join([f"{self.word} ({self.decision})", *self.causes])
+        outside = [self.outside.title] if self.outside else []
+        return ", ".join([f"{self.word} ({self.decision})", *self.causes, *outside])
 
     def _rows(self):
         yield "cause", "probability", "size", "with 90 % limits"
