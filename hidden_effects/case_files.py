@@ -96,6 +96,11 @@ def truth_of(results, name):
     return Path(results) / name / "truth" / "truth.json"
 
 
+def failure_of(results, name):
+    """File of the reason for which a case could not be made or diagnosed."""
+    return Path(results) / name / "failure.json"
+
+
 def verdict_of(results, name):
     """File of the verdict on a case."""
     return Path(results) / name / "verdict" / "verdict.json"

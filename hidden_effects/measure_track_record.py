@@ -20,7 +20,7 @@ from types import SimpleNamespace
 import mujoco_case
 import score
 from answer_file import load_answer
-from case_files import ROOT, SEEDS, campaign_of, load_plan, truth_of, verdict_of
+from case_files import ROOT, SEEDS, campaign_of, failure_of, load_plan, truth_of, verdict_of
 from make_case import LABORATORIES, made_by, make_case
 from oracle_gain import gains_of, response_gains, write_gains
 
@@ -74,19 +74,36 @@ def make_cases(cases, results, cores, log):
     maker = made_by()
     due = [case for case in cases if not _is_made(case, results, maker)]
     log("cases", due=len(due), ready=len(cases) - len(due), maker=maker)
+    _each(_make, "made", due, results, cores, log)
+
+
+def _each(step, word, cases, results, cores, log):
+    """A step of several cases at a time; a case in which it fails is logged with the reason and holds up no other."""
     with ProcessPoolExecutor(cores, get_context("spawn")) as pool:
-        for name, seconds in pool.map(partial(_make, results), due):
-            log("made", case=name, cpu_seconds=round(seconds, 1))
+        for case, seconds, fault in pool.map(partial(_attempt, step, results), cases):
+            said = {"case": case, "cpu_seconds": round(seconds, 1)}
+            if fault:
+                write_json(failure_of(results, case), {"step": step.__name__, "reason": fault})
+                log("failed", **said, reason=fault)
+            else:
+                log(word, **said)
+
+
+def _attempt(step, results, case):
+    """Name of a case, CPU time of a step of it [s], and the reason for which it failed, or None."""
+    begin, fault = cpu_time(), None
+    try:
+        step(results, case)
+    except Exception as error:
+        fault = f"{type(error).__name__}: {error}"
+    return case.name, cpu_time() - begin, fault
 
 
 def _make(results, case):
-    """Name of a case made, and the CPU time it took [s]."""
-    begin = cpu_time()
     make_case(
         case.seed, case.causes, case.size, campaign_of(results, case.name), truth_of(results, case.name).parent,
         case.gain is not None, case.structure, case.hollow, laboratory=case.laboratory, strength=case.strength,
     )  # fmt: skip
-    return case.name, cpu_time() - begin
 
 
 def _is_made(case, results, maker):
@@ -115,10 +132,12 @@ def diagnose(cases, results, cores, log):
         Cases at a time.
     log : Log
     """
-    due = [case for case in cases if not verdict_of(results, case.name).is_file()]
-    with ProcessPoolExecutor(cores, get_context("spawn")) as pool:
-        for name, seconds in pool.map(partial(_diagnose, results), due):
-            log("diagnosed", case=name, cpu_seconds=round(seconds, 1))
+    due = [
+        case
+        for case in cases
+        if not verdict_of(results, case.name).is_file() and not failure_of(results, case.name).is_file()
+    ]
+    _each(_diagnose, "diagnosed", due, results, cores, log)
 
 
 def measure_gains(cases, results, cores, log):
@@ -127,17 +146,15 @@ def measure_gains(cases, results, cores, log):
         case
         for case in cases
         if case.gain == "responses"
+        and verdict_of(results, case.name).is_file()
         and load_answer(verdict_of(results, case.name)).decision != "none"
         and not gains_of(results, case.name).is_file()
     ]
-    with ProcessPoolExecutor(cores, get_context("spawn")) as pool:
-        for name, seconds in pool.map(partial(_measure_gains, results), due):
-            log("gains", case=name, cpu_seconds=round(seconds, 1))
+    _each(_measure_gains, "gains", due, results, cores, log)
 
 
 def _measure_gains(results, case):
-    """Name of a case whose gains were measured, and the CPU time it took [s]."""
-    begin, out = cpu_time(), verdict_of(results, case.name).parent
+    out = verdict_of(results, case.name).parent
     findings = load_parity(out / "parity.json").findings
     gains = response_gains(
         campaign_of(results, case.name), load_json(truth_of(results, case.name)),
@@ -145,16 +162,11 @@ def _measure_gains(results, case):
     )  # fmt: skip
     write_gains(gains_of(results, case.name), gains)
     shutil.rmtree(out / "runs")
-    return case.name, cpu_time() - begin
 
 
 def _diagnose(results, case):
-    """Name of a case diagnosed by the steps of the rules, as at quick effort, and the CPU time it took [s]."""
-    begin, folder, out = (
-        cpu_time(),
-        campaign_of(results, case.name),
-        verdict_of(results, case.name).parent,
-    )
+    """Diagnose a case by the steps of the rules, as at quick effort."""
+    folder, out = campaign_of(results, case.name), verdict_of(results, case.name).parent
     out.mkdir(parents=True, exist_ok=True)
     files = SimpleNamespace(
         parity=str(out / "parity.json"), decision=str(out / "decision.json"), frozen=str(out / "frozen.json"),
@@ -169,7 +181,6 @@ def _diagnose(results, case):
         files.gain = [str(out / "gain.json")]
         write_json(files.gain[0], gained.summary.model_dump(mode="json"))
     write_verdict(verdict_of(results, case.name), steps.conclude(str(folder), 0, files))
-    return case.name, cpu_time() - begin
 
 
 def main(arguments):
@@ -189,6 +200,8 @@ def main(arguments):
         )
     log = Log(asked.output / "log.jsonl")
     log("started", cores=asked.cores, seeds=plan.digest, part=plan.part, cases=len(plan.cases))
+    for case in plan.cases:
+        failure_of(asked.output, case.name).unlink(missing_ok=True)
     make_cases(plan.cases, asked.output, asked.cores, log)
     if asked.make_only:
         return

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from answer_file import load_answer
 from answers import Scored
-from case_files import PAGE, README, ROOT, SEEDS, TRACK_RECORD, load_plan, truth_of, verdict_of
+from case_files import PAGE, README, ROOT, SEEDS, TRACK_RECORD, failure_of, load_plan, truth_of, verdict_of
 from make_case import LABORATORIES
 from oracle_gain import gains_of, load_gains
 from score_figures import figures
@@ -27,6 +27,8 @@ from blockshake.files import load_json, write_text
 
 def score_plan(plan, results, verdicts=None):
     """Every case of a plan with its truth, and its verdict and gains, or its verdict of another program.
+
+    A case that could not be made or diagnosed, as its file of the failure has it, is left out.
 
     Raises
     ------
@@ -46,6 +48,7 @@ def score_plan(plan, results, verdicts=None):
             load_gains(gains_of(results, case.name)),
         )
         for case in plan.cases
+        if verdict_of(results, case.name).is_file() or not failure_of(results, case.name).is_file()
     ]  # fmt: skip
 
 
@@ -61,6 +64,7 @@ def make_track_record(scored, plan):
         machine=f"{os.cpu_count()} cores",
         seeds=plan.digest,
         part=plan.part,
+        failed=sorted({case.name for case in plan.cases} - {case.name for case in scored}),
         **figures(scored),
     )
 

@@ -101,13 +101,15 @@ class ScoredRecord(TrackRecord):
     medians: dict[str, Median]
     confusion: tuple[Row, ...]
     gains: tuple[GainedCase, ...] = ()
+    failed: tuple[str, ...] = Field((), description="cases that could not be made or diagnosed")
     cases: tuple[JudgedCase, ...]
 
     @property
     def counted(self):
         """Number of cases in words, and which part of the list they are."""
         part = "" if self.part == WHOLE else f", {self.part} of the list, its strata kept"
-        return f"{len(self.cases)} campaigns{part}"
+        failed = f"; {len(self.failed)} more could not be made or diagnosed" if self.failed else ""
+        return f"{len(self.cases)} campaigns{part}{failed}"
 
     @model_validator(mode="after")
     def _consistent(self):

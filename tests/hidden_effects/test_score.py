@@ -18,6 +18,7 @@ from case_files import (
     SEEDS,
     SMALL_SEEDS,
     TRACK_RECORD,
+    failure_of,
     load_plan,
     truth_of,
     verdict_of,
@@ -375,6 +376,10 @@ def test_scoring_goes_from_the_files_of_a_run_to_track_record_and_page(perfect, 
     verdict_of(tmp_path, perfect[0].name).unlink()
     with pytest.raises(InputError):
         score.main(asked)
+    write_json(failure_of(tmp_path, perfect[0].name), {"step": "diagnose", "reason": "ValueError: none"})
+    score.main(asked)
+    assert load_scored_record(record).failed == (perfect[0].name,)
+    assert "; 1 more could not be made or diagnosed." in page.read_text()
 
 
 def test_another_plan_than_the_sealed_one_is_printed_alone(tmp_path, capsys):
