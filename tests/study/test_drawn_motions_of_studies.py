@@ -94,6 +94,13 @@ def test_a_wrong_intensity_is_named(study, intensity, said):
     assert said in refusal(study)
 
 
+@pytest.mark.parametrize(("levels", "remarked"), [([0.1, 0.15], True), ([0.5, 1.0], False), ([3.0], False)])
+def test_levels_that_may_be_in_g_are_remarked(study, tmp_path, levels, remarked):
+    study["cases"][0]["intensity"] = {"levels": levels}
+    (tmp_path / "mine.yaml").write_text(yaml.safe_dump(study))
+    assert ("not in g" in check(tmp_path / "mine.yaml")) == remarked
+
+
 def test_samples_climb_from_one_level(study):
     study["ladder"] = {"first": 1.0}
     study["fragility"] = {"cases": ["cube"], "size": 5}

@@ -168,16 +168,23 @@ class DrawnMotions:
 
     def motion(self, record):
         """`GroundMotion` of a record, at its level or with its scale, times that of the case."""
-        key = record.path, self.baseline
-        if key not in self.loaded:
-            self.loaded[key] = load_motion(record.path, baseline=self.baseline)
-        motion, factor = self.loaded[key], record.scale
+        motion, factor = self._read(record), record.scale
         if record.level is not None:
             own = self.intensity.of(motion)
             if own == 0.0:
                 raise InputError(record.path, "", "expected a motion along x, to be scaled to a level")
             factor = record.level / own
         return scaled(motion, factor * self.scale, record.path)
+
+    def _read(self, record):
+        key = record.path, self.baseline
+        if key not in self.loaded:
+            self.loaded[key] = load_motion(record.path, baseline=self.baseline)
+        return self.loaded[key]
+
+    def weakest_own(self):
+        """Smallest intensity of the records as they are, before any level."""
+        return min(self.intensity.of(self._read(one)) for one in self.records)
 
     def strongest(self):
         """Generator of every record's motion, at the highest level."""

@@ -35,6 +35,7 @@ from blockshake.virtual.settings import VirtualCampaign, load_settings
 
 _WIDEST = 1.0  # of a variable, its standard deviation over its mean
 _SLOWEST = 50.0  # Hz; impacts and peaks of a rocking stack lie between rows that are farther apart
+_LOW = 5.0  # times the highest level that the records' own intensities are
 _LATE = 5.0  # s of rest after a motion that need no remark
 
 
@@ -128,12 +129,23 @@ def _study_line(source):
         counts = sorted({config.samples(model, case.name) for case in config.cases})
         models.append(f"{model} ({' to '.join(map(str, dict.fromkeys((counts[0], counts[-1]))))} samples)")
     loaded = {}
-    motions = {
-        case.name: list(DrawnMotions.of(case.model_dump(), loaded).strongest()) for case in config.cases
-    }
+    drawn = {case.name: DrawnMotions.of(case.model_dump(), loaded) for case in config.cases}
+    motions = {name: list(one.strongest()) for name, one in drawn.items()}
     records = [f"  {name}: {provenance(motion.attributes)}" for (name, _), motion in loaded.items()]
     lines = [f"a study of {count_words(len(config.cases), 'case')} by {', '.join(models)}", *records]
-    return _with_remarks(lines, _study_remarks(config, motions))
+    remarks = [*_level_remarks(drawn), *_study_remarks(config, motions)]
+    return _with_remarks(lines, remarks)
+
+
+def _level_remarks(drawn):
+    """Levels that are far below the records' own intensities, as those in g are."""
+    for name, motions in drawn.items():
+        levels = motions.intensity.levels
+        if levels and _LOW * levels[-1] < (own := motions.weakest_own()):
+            yield (
+                f"{name}: the highest level, {levels[-1]:g}, is far below the records' own {own:.3g} and more: "
+                "levels are in m/s2, or m/s, not in g"
+            )
 
 
 def _read_measured(config, source):
