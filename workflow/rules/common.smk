@@ -145,9 +145,8 @@ config.update(configuration())
 CHECKED = study_config()
 config.update(CHECKED.model_dump(mode="json"))
 
-TEMPLATES = expand(
-    beside(PACKAGE / "pages" / "templates" / "{name}"),
-    name=["report.html.j2", "report.css", "report.js", "moving.js", "report.typ"],
+TEMPLATES = sorted(
+    map(beside, {*PACKAGE.rglob("*.j2"), *PACKAGE.glob("pages/templates/*")})
 )
 STUDY = config["name"]
 MODELS = list(config["models"])

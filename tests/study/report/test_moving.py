@@ -4,14 +4,14 @@ import json
 import numpy as np
 import pytest
 
-from blockshake.study.ensembles.shown_samples import shown_markers
-from blockshake.study.report.content import load_content
-from blockshake.study.report.moving import (
+from blockshake.study.ensembles.moving import (
     MAGNIFICATIONS,
     moving_samples,
     plot_still,
     usual_magnification,
 )
+from blockshake.study.ensembles.shown_samples import shown_markers
+from blockshake.study.report.content import load_content
 
 
 @pytest.fixture(scope="module")

@@ -67,8 +67,8 @@ def test_sections_and_contents(text, title):
 
 def test_synthetic_is_said_where_it_shows(report, text):
     assert "The measured curves are SYNTHETIC" in text
-    assert "The ground motions are synthetic, not recorded: basso-tirreno." in text
-    assert "Virtual test (synthetic)" in text
+    assert "basso-tirreno is a synthetic ground motion, not recorded." in text
+    assert "virtual test (synthetic)" in text
     assert not [claim for claim in CLAIMS if claim in text.lower()]
 
 
@@ -97,10 +97,7 @@ def test_samples_that_did_not_complete_are_listed_with_their_reason(text):
     assert f"configuration-4 NSCD rigid 2 collapsed 1 {COLLAPSE_REASON}" in text
     assert "configuration-4 NSCD rigid 4 not-converged" in text
     assert "48 runs: 46 completed, 1 collapsed, 0 still falling when the window ended, 1 failed" in text
-    assert (
-        "How samples end that failed for a numerical reason: configuration-4 by NSCD rigid (1 of 6). No statistic"
-        in text
-    )
+    assert "Some samples failed for a numerical reason: configuration-4 by NSCD rigid (1 of 6)." in text
 
 
 def test_fewer_samples_of_a_model_are_said(text):

@@ -1,18 +1,23 @@
-"""The first page of a study: every sentence follows its files."""
+"""The first page of a study: every value follows its files."""
 
+import re
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
+import xarray as xr
 from page import texts
 
 from blockshake.statistics.intervals import share_interval
+from blockshake.study.comparison.paired import models_apart, theory_of
+from blockshake.study.ensembles.envelope import single_figures
 from blockshake.study.report.answer import answer
-from blockshake.study.report.case_outcomes import models_apart, most_telling, outcomes, shares_at_impacts
+from blockshake.study.report.case_outcomes import evidence, most_telling, outcomes
 from blockshake.study.report.content import load_content
-from blockshake.study.report.open_questions import MOST, next_steps, unknown
+from blockshake.study.report.open_questions import MOST, unknown
 from blockshake.study.report.result_sections import joints_table
+from blockshake.study.sensitivity.findings import explained_by_motion
 
 FIRST, FOURTH = "configuration-1", "configuration-4"
 
@@ -45,39 +50,88 @@ def with_statuses(content, name, model, statuses):
     return changed(content, name, responses={**case.responses, model: replace(one, samples=samples)})
 
 
-def test_the_page_says_what_was_asked_first(content):
-    asked = answer(content).blocks[0].text
-    assert asked.startswith("Asked: configuration-1 and configuration-4 under basso-tirreno x 2 (2.47 m/s")
-    assert "2 s, by 4 models, 1 to 10 samples each" in asked
-    assert "Uncertain: friction, density, Young's modulus and viscous modulus." in asked
+def with_peaks(content, name, model, peaks):
+    """The content with other peaks of the samples of a case by a model, the same at every marker [m]."""
+    case = content.cases[name]
+    one = case.responses[model]
+    samples = one.samples.copy(deep=True)
+    samples["peak"][:] = xr.DataArray(np.asarray(peaks, dtype=float), dims="sample")
+    drift = one.envelope["drift_probability"].attrs["largest_drift"]
+    envelope = one.envelope.drop_dims(["bound", "quantile"]).merge(
+        single_figures(samples, drift), compat="override"
+    )
+    again = replace(one, samples=samples, envelope=one.envelope.assign(envelope))
+    return changed(content, name, responses={**case.responses, model: again})
 
 
-def test_what_stands_and_what_may_collapse_is_that_of_the_samples(content):
+def numbers(text):
+    return [float(one) for one in re.findall(r"\d+(?:\.\d+)?", text)]
+
+
+def found_of(content):
+    return {one.name: outcomes(one) for one in content.stripes}
+
+
+def apart_of(content):
+    return models_apart(content.stripes, found_of(content))
+
+
+def at_levels(content, levels=(3.0, 6.0)):
+    """The content with the samples of the first case at levels in turn, and without its measured test."""
+    return changed(
+        content,
+        FIRST,
+        levels={sample: levels[sample % len(levels)] for sample in range(10)},
+        settings={**content.cases[FIRST].settings, "intensity": {"measure": "pga", "levels": levels}},
+        measured=None,
+        synthetic=False,
+    )
+
+
+def test_the_page_says_what_was_simulated_first(content):
+    said = answer(content).blocks[0].text
+    assert all(word in said for word in (FIRST, FOURTH, "basso-tirreno x 2", "friction", "density"))
+    assert numbers(said.partition("Each model ran")[2])[:2] == [1.0, 10.0]
+
+
+def test_the_headline_follows_the_models_with_most_runs(content):
+    """Not the four runs of a slow model, whose limit would be 60 %, nor the one run, whose limit would be 98 %."""
     box, *_ = parts(content)
-    stands, may = box.sentence.split(". configuration-4 may collapse")
-    assert stands.startswith(f"{FIRST} stands: none of 28 runs")
-    upper = 100.0 * share_interval(0, 4)[1]  # of the model with the fewest samples
-    assert (
-        f"none of 28 runs by 4 models collapses; as few as 4 runs of a case by a model leave a probability of a "
-        f"collapse of up to {upper:.0f} %" in stands
-    )
-    # one collapsed and one failed of six
-    assert may == ": in 1 of 5 runs by NSCD rigid, in none by the others."
-    lower, upper = (100.0 * one for one in share_interval(1, 5, 1))
-    assert box.facts[2][1:] == (
-        "1 of 5",
-        f"{FOURTH} by NSCD rigid: probability {lower:.0f} to {upper:.0f} %, 95 % limits",
-    )
+    upper = round(100.0 * share_interval(0, 10)[1])
+    stands, may = box.sentence.split(f"{FOURTH} may collapse")
+    assert numbers(stands.removeprefix(FIRST))[:3] == [upper, 95.0, 10.0]
+    assert "LS-DEM" in stands
+    assert "NSCD rigid" in stands
+    assert "elastic" not in box.sentence
+    # one collapsed and one failed of six: too few for limits, told as runs
+    assert "1 of 5 runs by NSCD rigid" in may
+    assert f"none of 10 runs by LS-DEM (probability below {upper} %)" in may
+
+
+def test_few_runs_of_every_model_tell_no_probability(content):
+    few = {
+        model: replace(one, samples=one.samples.isel(sample=slice(3)))
+        for model, one in content.cases[FIRST].responses.items()
+    }
+    alone = replace(content, cases={FIRST: replace(content.cases[FIRST], responses=few)})
+    box, table, _ = parts(alone)
+    assert "too few for a probability" in box.sentence
+    assert "%" not in box.sentence
+    assert {row[3] for row in table.rows} == {"too few runs"}
+
+
+def test_best_evidence_has_about_the_most_runs_and_bears_limits(content):
+    assert set(evidence(found_of(content)[FIRST])) == {"ls-dem", "nscd-rigid"}
+    assert set(evidence(found_of(content)[FOURTH])) == {"ls-dem"}
+    few = {model: one for model, one in found_of(content)[FIRST].items() if one.counted < 6}
+    assert evidence(few) == few
 
 
 def test_samples_that_were_not_down_when_the_window_ended_are_said_to_fall_still(content):
-    one = content.cases[FIRST].responses["nscd-rigid"]
-    size = one.samples.sizes["sample"]
+    size = content.cases[FIRST].responses["nscd-rigid"].samples.sizes["sample"]
     fell = with_statuses(content, FIRST, "nscd-rigid", ["falling"] * size)
-    _, table, _ = parts(fell)
-    cell = next(cell for cell in table.rows[0][1:] if "collapse" in cell and "still falling" in cell)
-    assert cell.startswith(f"all {size} samples collapse ({size} still falling): ")
-    assert any(line.startswith("Whether samples that fall as the window ends") for line in unknown(fell))
+    assert f"{size} of them still falling" in parts(fell)[0].sentence
+    assert any("fall as the window ends count as collapses" in line for line in unknown(fell))
 
 
 def test_a_study_whose_samples_all_fall_says_so(content):
@@ -85,78 +139,150 @@ def test_a_study_whose_samples_all_fall_says_so(content):
         for model, one in case.responses.items():
             content = with_statuses(content, name, model, ["collapsed"] * one.samples.sizes["sample"])
     box, table, _ = parts(content)
-    assert box.sentence == "Both cases collapse: so do all 48 runs by 4 models."
-    assert table.rows[0][1].startswith("all 10 samples collapse: ")
+    lower = round(100.0 * share_interval(10, 10)[0])
+    assert box.sentence == f"Both cases collapse in every run: probability above {lower} %."
+    assert table.rows[0][2] == "10 of 10"
 
 
 def test_a_case_whose_samples_all_still_fall_is_open(content):
     """Later shaking may catch them."""
     for model, one in content.cases[FIRST].responses.items():
         content = with_statuses(content, FIRST, model, ["falling"] * one.samples.sizes["sample"])
-    told = f"Whether {FIRST} stands is not told: all 28 runs by 4 models still fall as the window ends."
-    assert parts(content)[0].sentence.endswith(told)
+    assert f"Whether {FIRST} stands is open" in parts(content)[0].sentence
 
 
-def test_samples_that_still_fall_count_as_collapsed(content):
-    falling = with_statuses(content, FIRST, "ls-dem", ["falling"] * 3 + ["completed"] * 7)
-    assert outcomes(falling.cases[FIRST])["ls-dem"].collapsed == 3
-    assert "3 of 10 runs by LS-DEM" in parts(falling)[0].sentence
-
-
-def test_the_block_that_moves_farthest_is_told_relative_to_the_slab(content):
-    """By the median of the samples, and by the smallest and the largest of them."""
+def test_a_row_has_the_block_that_moves_farthest_with_median_and_all_runs(content):
     row = parts(content)[1].rows[0]
-    response = content.cases[FIRST].responses["ls-dem"]
-    peaks = 1e3 * response.samples["peak"].sel(frame="slab", marker="block-3-face")
-    assert row[:2] == (
-        f"{FIRST}, block-3",
-        f"stands; {float(peaks.median()):.0f} mm ({float(peaks.min()):.0f} to {float(peaks.max()):.0f}); "
-        "collapse below 31 %",
+    peaks = 1e3 * content.cases[FIRST].responses["ls-dem"].samples["peak"].sel(
+        frame="slab", marker="block-3-face"
     )
-
-
-def test_cases_of_one_structure_are_told_apart_by_their_motion(content):
-    """And a block that is the farthest by one model alone is named beside its figure."""
-    case = content.cases[FIRST]
-    lower = case.responses["ls-dem"].envelope.copy(deep=True)
-    lower["peak"].loc[{"marker": "block-2-face"}] *= 9.0
-    responses = {**case.responses, "ls-dem": replace(case.responses["ls-dem"], envelope=lower)}
-    row = parts(changed(content, FIRST, responses=responses, settings={**case.settings, "scale": 1.0}))[
-        1
-    ].rows[0]
-    assert row[0].startswith(f"{FIRST}, basso-tirreno x 1 (1.23 m/s")
-    assert row[1].startswith("stands; block-2 ")
-    assert row[2].startswith("stands; block-3 ")
+    assert (row[0], row[-1]) == (FIRST, "block-3")
+    assert float(row[4]) == round(float(peaks.median()))
+    assert numbers(row[5]) == [round(float(peaks.min())), round(float(peaks.max()))]
 
 
 def test_what_is_left_is_told_of_a_block_at_rest_alone(content):
     """The made-up blocks sway until the end; one that stops a second before it has a residual."""
-    case = content.cases[FIRST]
-    assert np.isnan(outcomes(case)["ls-dem"].end)
-    one = case.responses["ls-dem"]
+    stripe = content.cases[FIRST].stripes[0]
+    assert np.isnan(outcomes(stripe)["ls-dem"].end)
+    assert parts(content)[1].rows[0][7] == "moves"
+    one = stripe.responses["ls-dem"]
     envelope = one.envelope.assign(still_moving=0.4 * (one.envelope["still_moving"] > 0.0))
-    still = replace(case, responses={"ls-dem": replace(one, envelope=envelope)})
+    still = stripe._replace(responses={"ls-dem": replace(one, envelope=envelope)})
     residual = envelope["residual"].sel(frame="slab", quantile=0.5, marker="block-3-face")
     assert outcomes(still)["ls-dem"].end == abs(float(residual))
 
 
-def test_a_case_that_still_moves_is_to_be_simulated_for_longer(content):
-    for motion in content.motions.values():
-        motion.attrs["significant_end"] = 1.0
-    steps = parts(content)[2]["next"]
-    assert steps[0].startswith("Simulate configuration-1 and configuration-4 for longer (key duration)")
+def test_margins_are_the_median_and_the_least_run(content):
+    box, table, _ = parts(content)
+    margins = 100.0 * content.cases[FIRST].responses["ls-dem"].samples["joint_margin"].min("joint")
+    assert numbers(table.rows[0][6]) == [round(float(margins.median())), round(float(margins.min()))]
+    used = [found_of(content)[FIRST][model] for model in ("ls-dem", "nscd-rigid")]
+    assert numbers(box.facts[1][1]) == sorted({round(100.0 * one.margin) for one in used})
+    assert f"worst run {100.0 * min(one.least_margin for one in used):.0f} %" in box.facts[1][2]
 
 
-def test_the_least_margin_is_that_of_the_weakest_joint(content):
-    box, *_ = parts(content)
-    label, value, note = box.facts[1]
-    margins = [
-        float(one.envelope["joint_margin"].sel(quantile=0.5).min())
-        for one in content.cases[FIRST].responses.values()
-    ]
-    assert label == "Least margin against overturning"
-    assert value == f"{100.0 * min(margins):.0f} to {100.0 * max(margins):.0f} %"
-    assert note.startswith("above slab-block-1; configuration-1; ")
+def test_levels_are_never_pooled(content):
+    """Each level has its own row, limits and displacement: nothing on the page is of both."""
+    both = at_levels(content)
+    peaks = 0.01 + 0.1 * (np.arange(10) % 2)
+    for model in ("ls-dem", "nscd-rigid"):
+        both = with_peaks(both, FIRST, model, peaks)
+    fell = with_statuses(both, FIRST, "ls-dem", ["completed", "collapsed"] * 5)
+    box, table, _ = parts(replace(fell, cases={FIRST: fell.cases[FIRST]}))
+    rows = {row[:2]: row[2:] for row in table.rows}
+    low, high = f"{FIRST} at 3 m/s²", f"{FIRST} at 6 m/s²"
+    assert (rows[low, "LS-DEM"][0], rows[high, "LS-DEM"][0]) == ("0 of 5", "5 of 5")
+    assert (rows[low, "NSCD rigid"][2], rows[high, "NSCD rigid"][2]) == ("10", "110")
+    assert f"{high} may collapse" in box.sentence
+    assert re.fullmatch(r"10 to \d+ mm at 3 m/s², \d+ to 110 mm at 6 m/s²", box.facts[0][1])
+    assert not {"10", "60"} & set(
+        re.findall(r"\d+", box.sentence.replace("95 %", ""))
+    )  # of all runs together
+
+
+def test_models_are_held_against_each_other_by_level(content):
+    """Where they differ at one level in every sample, and not at the other, the page says so."""
+    both = at_levels(content)
+    samples = np.arange(20)
+    for model, more in (("ls-dem", 0.1), ("nscd-rigid", 0.0)):
+        one = both.cases[FIRST].responses[model]
+        twice = xr.concat(
+            [one.samples, one.samples.assign_coords(sample=one.samples["sample"] + 10)], "sample"
+        )
+        both.cases[FIRST].responses[model] = replace(one, samples=twice)
+        both = with_peaks(both, FIRST, model, 0.1 + more * (samples % 2 == 0))
+    case = replace(both.cases[FIRST], levels={sample: (3.0, 6.0)[sample % 2] for sample in range(20)})
+    alone = replace(both, cases={FIRST: case})
+    apart, tried = apart_of(alone)
+    (one,) = [one for one in apart if {one.near, one.far} == {"ls-dem", "nscd-rigid"}]
+    assert (one.stripe, one.near, one.far) == (f"{FIRST} at 3 m/s²", "nscd-rigid", "ls-dem")
+    assert (one.farther, one.pairs, one.times) == (10, 10, pytest.approx(2.0))
+    assert tried == [f"{FIRST} at 3 m/s²", f"{FIRST} at 6 m/s²"]
+    said = " ".join(parts(alone)[2]["models-apart"])
+    assert f"{FIRST} at 3 m/s²: LS-DEM moves the blocks farther than NSCD rigid, in 10 of 10 samples" in said
+    assert f"{FIRST} at 6 m/s²: no difference" in said
+
+
+def test_models_differ_where_the_same_samples_do_by_more_than_chance(content):
+    alike = content.cases[FIRST].responses["ls-dem"].samples["peak"].sel(frame="slab", marker="block-3-face")
+    same = with_peaks(content, FIRST, "ls-dem", alike.values)
+    same = with_peaks(same, FIRST, "nscd-rigid", alike.values)
+    pair = {"ls-dem", "nscd-rigid"}
+    assert not any({one.near, one.far} == pair for one in apart_of(same)[0])
+    # a tenth of a percent in every sample is sure, and matters to nobody
+    close = with_peaks(same, FIRST, "nscd-rigid", 1.03 * alike.values)
+    assert not any({one.near, one.far} == pair for one in apart_of(close)[0])
+    # twice as far in six of ten samples, half as far in the others: chance
+    mixed = with_peaks(same, FIRST, "nscd-rigid", alike.values * np.where(np.arange(10) < 6, 2.0, 0.5))
+    assert not any({one.near, one.far} == pair for one in apart_of(mixed)[0])
+    twice = with_peaks(same, FIRST, "nscd-rigid", 2.0 * alike.values)
+    (one,) = [one for one in apart_of(twice)[0] if {one.near, one.far} == pair]
+    assert (one.far, one.farther, one.times) == ("nscd-rigid", 10, pytest.approx(2.0))
+    fell = with_statuses(same, FIRST, "nscd-rigid", ["collapsed"] * 10)
+    (one,) = [one for one in apart_of(fell)[0] if {one.near, one.far} == pair]
+    assert (one.far, one.falls) == ("nscd-rigid", 10)
+
+
+@pytest.mark.parametrize(
+    ("kept", "uplift", "slip", "theory"),
+    [
+        ((0.95, 0.0), 0.01, 0.001, "nscd-rigid"),  # the share of one model is Housner's
+        ((0.02, 0.0), 0.01, 0.001, None),  # that of both
+        ((0.95, 0.3), 0.01, 0.001, None),  # that of none
+        ((0.95, 0.0), 0.001, 0.01, None),  # blocks slide
+    ],
+)
+def test_theory_bears_out_the_model_whose_impacts_are_housners(content, kept, uplift, slip, theory):
+    """Shares as offsets from Housner's, of the joint on the slab; the joints above stay closed."""
+    twice = with_peaks(content, FIRST, "ls-dem", 0.2 * np.ones(10))
+    twice = with_peaks(twice, FIRST, "nscd-rigid", 0.1 * np.ones(10))
+    (apart,) = [one for one in apart_of(twice)[0] if {one.near, one.far} == {"ls-dem", "nscd-rigid"}]
+    stripe = twice.cases[FIRST].stripes[0]
+    housner = theory_of(stripe, apart).housner
+    # three blocks as one of 0.8 x 4.8 m: 1 - 1.5 sin(alpha)^2, less the chamfer's share
+    assert housner == pytest.approx(1.0 - 1.5 * np.sin(np.arctan(0.8 / 4.8)) ** 2, abs=0.01)
+    responses = {}
+    for (model, one), off in zip(list(stripe.responses.items())[:2], kept, strict=True):
+        joint = one.envelope["joint"]
+        on_slab = joint == "slab-block-1"
+        envelope = one.envelope.assign(
+            joint_spin_kept=(on_slab * (housner - off)).broadcast_like(one.envelope["joint_spin_kept"]),
+            joint_uplift=(on_slab * uplift).broadcast_like(one.envelope["joint_uplift"]),
+            joint_slip=(on_slab * slip).broadcast_like(one.envelope["joint_slip"]),
+        )
+        responses[model] = replace(one, envelope=envelope)
+    told = theory_of(stripe._replace(responses=responses), apart)
+    assert (told.borne_out, told.rocks, told.as_one) == (theory, uplift > slip, True)
+
+
+def test_a_stack_that_opens_in_several_joints_is_no_body_of_theory(content):
+    twice = with_peaks(content, FIRST, "ls-dem", 0.2 * np.ones(10))
+    twice = with_peaks(twice, FIRST, "nscd-rigid", 0.1 * np.ones(10))
+    (apart,) = [one for one in apart_of(twice)[0] if {one.near, one.far} == {"ls-dem", "nscd-rigid"}]
+    told = theory_of(twice.cases[FIRST].stripes[0], apart)
+    assert (told.as_one, told.borne_out) == (False, None)
+    assert "until a measured test does" in " ".join(parts(twice)[2]["models-apart"])
 
 
 def test_blows_are_told_by_case_and_model(content):
@@ -170,75 +296,43 @@ def test_blows_are_told_by_case_and_model(content):
     }
     struck = replace(one, samples=one.samples.assign({name: ("sample", made[name]) for name in made}))
     (said,) = parts(changed(content, FIRST, responses={**case.responses, "ls-dem": struck}))[2]["blows"]
-    assert said.startswith(
-        f"{FIRST}: in 3 of 10 samples by LS-DEM, at most 12 blows in one, the fastest at 0.40 m/s (a and c); none by "
-        "the others."
-    )
-    assert said.endswith("which no model has.")
+    assert said.startswith(f"{FIRST}: 3 of 10 runs by LS-DEM, at most 12 blows")
+    assert "0.40 m/s (a and c)" in said
 
 
 def test_a_case_in_which_most_samples_stand_is_shown(content):
-    found = {name: outcomes(case) for name, case in content.cases.items()}
+    found = found_of(content)
     assert most_telling(found) == FIRST
     fallen = {model: one._replace(collapsed=one.counted) for model, one in found[FIRST].items()}
     assert most_telling({**found, FIRST: fallen}) == FOURTH
 
 
-def test_models_differ_by_collapses_and_by_medians_beyond_their_limits(content):
-    case = content.cases[FIRST]
-    found = outcomes(case)
-    assert not any({"ls-dem", "nscd-rigid"} == {one.near, one.far} for one in models_apart(case, found))
-    one = case.responses["ls-dem"]
-    envelope = one.envelope.copy(deep=True)
-    for name in ("peak", "peak_interval"):
-        envelope[name] += 1.0
-    moved = replace(case, responses={**case.responses, "ls-dem": replace(one, envelope=envelope)})
-    apart = [
-        one for one in models_apart(moved, outcomes(moved)) if {one.near, one.far} == {"ls-dem", "nscd-rigid"}
-    ]
-    assert [(one.near, one.far, one.falls) for one in apart] == [("nscd-rigid", "ls-dem", 0.0)]
-    fell = {**found, "ls-dem": found["ls-dem"]._replace(collapsed=5)}
-    assert max(models_apart(case, fell))[:1] == (0.5,)
-    assert max(models_apart(case, fell)).far == "ls-dem"
+def test_record_and_level_explain_what_they_make(content):
+    """Of demands that are a product of a record's and a level's factor, all; of others little."""
+    samples = np.arange(32)
+    levels = {int(sample): (3.0, 6.0)[sample % 2] for sample in samples}
+    record = (samples // 2) % 8
+    made = 0.01 * (1.0 + record) * np.where(samples % 2, 4.0, 1.0)
+    noise = np.exp(np.random.default_rng(1).normal(size=32))
+    shares = []
+    for demand in (made, 0.01 * noise):
+        cloud = xr.Dataset(
+            {"demand": ("sample", demand)},
+            {"sample": samples, "record": ("sample", [f"r{one}" for one in record])},
+        )
+        response = replace(content.cases[FIRST].responses["ls-dem"], cloud=cloud)
+        shares += [
+            explained_by_motion(replace(content.cases[FIRST], levels=levels, responses={"a": response}))["a"]
+        ]
+    assert shares[0] == pytest.approx(1.0)
+    assert shares[1] < 0.5
 
 
-@pytest.mark.parametrize(
-    ("kept", "words"),
-    [
-        (0.95, "Impacts explain a larger motion by NSCD rigid, which loses less."),
-        (0.2, "Impacts do not explain it: NSCD rigid loses more."),
-        (0.78, "Impacts do not tell the models apart."),
-    ],
-)
-def test_why_models_differ_follows_the_spin_that_impacts_keep(content, kept, words):
-    case = content.cases[FOURTH]
-    one = case.responses["nscd-rigid"]
-    envelope = one.envelope.copy(deep=True)
-    envelope["joint_spin_kept"][:] = kept
-    responses = {**case.responses, "nscd-rigid": replace(one, envelope=envelope)}
-    said = parts(changed(content, FOURTH, responses=responses))[2]["beside"][0]
-    assert said.startswith(f"In {FOURTH} NSCD rigid collapses more often than NSCD elastic. At ")
-    assert f"and {kept:.2f} by NSCD rigid; all above it" in said
-    assert words in said
-    assert "The largest slip, median of the samples, is " in said
-    joint, (own, *_) = shares_at_impacts(case, ("nscd-elastic", "nscd-rigid"))
-    assert (
-        f"At {joint}, the joint that opens most, impacts keep {own:.2f} of the spin by NSCD elastic" in said
-    )
-
-
-def test_models_that_do_not_differ_are_said_not_to(content):
-    study = {**content.study, "models": {"ls-dem": {}, "nscd-rigid": {}}}
-    case = content.cases[FIRST]
-    responses = {model: case.responses[model] for model in study["models"]}
-    alone = replace(content, study=study, cases={FIRST: replace(case, responses=responses)})
-    assert parts(alone)[2]["beside"][0] == "The models do not differ beyond the limits of their samples."
-
-
-def test_measured_peak_stands_beside_the_models_that_it_is_like(content):
-    said = parts(content)[2]["beside"][1]
+def test_the_measured_peak_stands_with_the_models_that_it_is_like(content):
+    said = next(one for one in parts(content)[2]["beside"] if one.startswith(FIRST))
     peak = 1e3 * float(content.cases[FIRST].measured["peak"].sel(frame="slab", marker="block-3-face"))
-    assert said.startswith(f"Virtual test (synthetic): {FIRST}, block-3 moves by {peak:.0f} mm, like LS-DEM")
+    assert f"block-3 moves by {peak:.0f} mm in the virtual test (synthetic)" in said
+    assert "like a run by LS-DEM" in said
 
 
 def test_without_a_measured_test_nothing_is_said_of_one(content):
@@ -246,41 +340,50 @@ def test_without_a_measured_test_nothing_is_said_of_one(content):
         content = changed(content, name, measured=None, synthetic=False)
     _, _, named = parts(content)
     assert "irtual test" not in " ".join(named["beside"])
-    assert f"real blocks: {FIRST} and {FOURTH} (no measured test)" in named["not-known"][0]
+    assert f"{FIRST} and {FOURTH} have no measured test" in named["not-known"][0]
+
+
+def test_a_potential_collapse_is_told_with_its_limit_and_its_step(content):
+    (said,) = [one for one in parts(content)[2]["beside"] if "potential collapse" in one]
+    median = float(content.fragility[FIRST]["median"])
+    assert {400.0, float(f"{median:.2g}"), 0.25} <= set(numbers(said))
 
 
 def test_next_steps_follow_the_results(content):
     steps = parts(content)[2]["next"]
-    assert steps[0].startswith(
-        "Simulate configuration-1 and configuration-4 until the strong motion ends: 3 s"
-    )
-    assert steps[1].startswith("Let a block rock and measure the spin that impacts keep: 0.")
+    assert "until the strong motion ends, 3 s" in steps[0]
     # 0.975 to the power of 1/72: Clopper and Pearson's upper limit without an event
     assert 1.0 - 0.025 ** (1.0 / 72.0) < 0.05 < 1.0 - 0.025 ** (1.0 / 71.0)
-    assert steps[2].startswith("Run 72 samples a model")
+    assert any(step.startswith("Run 72 samples") and "now 31 % (10 runs" in step for step in steps)
     assert len(steps) <= MOST
 
 
+def test_a_case_that_still_moves_is_to_be_simulated_for_longer(content):
+    for motion in content.motions.values():
+        motion.attrs["significant_end"] = 1.0
+    assert parts(content)[2]["next"][0].startswith(f"Simulate {FIRST} and {FOURTH} for longer (key duration)")
+
+
 def test_more_samples_of_a_case_whose_samples_do_not_differ_are_not_advised(content):
-    found = {name: outcomes(case) for name, case in content.cases.items()}
-    alike = {
-        name: {model: one._replace(least=one.most - 0.9e-4) for model, one in ended.items()}
-        for name, ended in found.items()
-    }
+    for motion in content.motions.values():
+        motion.attrs["significant_end"] = 1.0
+    for name, case in list(content.cases.items()):
+        for model, one in case.responses.items():
+            size = one.samples.sizes["sample"]
+            content = with_peaks(content, name, model, 0.1 + 0.9e-5 * np.arange(size))
     assert content.cases[FIRST].marker_noise == 1e-4
-    assert any(step.startswith("Run 72 samples") for step in next_steps(content, found))
-    # one sample by elastic NSCD says nothing of what others would do
-    assert "now 98 % (1 sample)" in next(one for one in next_steps(content, alike) if "72 samples" in one)
-    del alike[FOURTH]["nscd-elastic"]
-    assert not any("72 samples" in step for step in next_steps(content, alike))
+    assert not any("72 samples" in step for step in parts(content)[2]["next"])
 
 
 def test_gaps_beyond_the_first_page_are_told_all_the_same(content):
     gaps = unknown(content)
-    assert any("which is assumed and not calibrated: configuration-4." in one for one in gaps)
-    assert any("peaks are lower limits: configuration-4 by NSCD rigid (" in one for one in gaps)
-    assert any("fewer than 59 samples bear no limits" in one for one in gaps)
-    assert any(one == "How far blocks without a marker move: 4 of configuration-4." for one in gaps)
+    for words in (
+        "not calibrated: configuration-4",
+        "configuration-4 by NSCD rigid (1 of 6)",
+        "needs 59 samples",
+    ):
+        assert any(words in one for one in gaps), words
+    assert any("without a marker" in one and "4 of configuration-4" in one for one in gaps)
 
 
 def test_a_window_that_ends_after_the_strong_motion_leaves_nothing_open(content):
@@ -298,10 +401,22 @@ def test_a_study_without_any_result_says_so(content):
     assert list(texts(answer(content)))[-1] == "No sample of any case has a result."
 
 
-def test_joints_of_a_case_are_a_row_each(content):
-    (table,) = joints_table(content.cases[FIRST])
-    assert [row[0] for row in table.rows] == ["block-2-block-3", "block-1-block-2", "slab-block-1"]
+def test_joints_of_a_case_have_a_row_a_model_and_a_cell_a_figure(content):
+    (table,) = joints_table(content.cases[FIRST].stripes[0])
+    assert list(dict.fromkeys(row[0] for row in table.rows)) == [
+        "block-2-block-3", "block-1-block-2", "slab-block-1",
+    ]  # fmt: skip
+    row = next(row for row in table.rows if row[:2] == ("slab-block-1", "LS-DEM"))
     one = content.cases[FIRST].responses["ls-dem"].envelope.sel(quantile=0.95, joint="slab-block-1")
-    shown = table.rows[-1][1].split(" / ")
     wanted = 1e-3 * one["joint_compression"], 1e3 * one["joint_uplift"], 1e3 * one["joint_slip"]
-    assert [float(part) for part in shown] == pytest.approx([float(value) for value in wanted], rel=5e-3)
+    assert [float(cell) for cell in row[2:]] == pytest.approx(
+        [float(value) for value in wanted], rel=2e-3, abs=0.05
+    )
+
+
+def test_joints_that_do_not_move_are_told_as_zero(content):
+    stripe = content.cases[FIRST].stripes[0]
+    one = stripe.responses["ls-dem"]
+    envelope = one.envelope.assign(joint_slip=0.0 * one.envelope["joint_slip"] + 5e-10)
+    (table,) = joints_table(stripe._replace(responses={"ls-dem": replace(one, envelope=envelope)}))
+    assert {row[-1] for row in table.rows} == {"0"}

@@ -5,6 +5,7 @@ from matplotlib.patches import Patch
 
 from blockshake.pages.drawing import GREY, LIGHT_GREY, MEASURED, RED, column_title, new_figure
 from blockshake.pages.wording import model_label
+from blockshake.study.ensembles.envelope import STILL
 
 _MOST_POINTS = 500  # of a curve; in print a fifth of a point apart or more: finer ones only make files large
 
@@ -28,7 +29,7 @@ def plot_displacements(envelopes, measured, markers, labels, frame, synthetic):
     Returns
     -------
     matplotlib.figure.Figure
-        Light grey from the smallest to the largest of the samples, bounds in red, darker grey
+        Light grey from the smallest to the largest of the samples, bounds in red where they part, darker grey
         between the quantiles 5 and 95 %, the measured curve dashed.
     """
     figure = new_figure(0.020 + (0.029 if len(markers) < 6 else 0.0255) * len(markers))
@@ -68,7 +69,8 @@ def _draw_ensemble(axes, envelope):
         (inner.sel(quantile=0.05), inner.sel(quantile=0.95), GREY),
     ):
         axes.fill_between(thinned["time"], low, high, color=color, linewidth=0.0)
-    for bound in ("lower", "upper"):
+    width = envelope["marker_envelope"].sel(bound="upper") - envelope["marker_envelope"].sel(bound="lower")
+    for bound in ("lower", "upper") if float(width.max()) > STILL else ():  # bounds of a line hide it
         axes.plot(
             envelope["time"], 1e3 * envelope["marker_envelope"].sel(bound=bound), color=RED, linewidth=0.6
         )

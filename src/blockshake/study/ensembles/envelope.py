@@ -95,7 +95,6 @@ def envelope(ensemble, largest_drift, displacement=None):
     statistic; the limits of the probabilities hold that all of them fell and that none did.
     """
     counted = counted_samples(ensemble)
-    failed = ensemble.sizes["sample"] - counted.sizes["sample"]
     probabilities = xr.DataArray(list(QUANTILES), dims="quantile", coords={"quantile": list(QUANTILES)})
     bounds = xr.DataArray(list(BOUNDS.values()), dims="bound", coords={"bound": list(BOUNDS)})
     read = displacement or (lambda markers: ensemble["marker_displacement"].sel(marker=markers))
@@ -104,28 +103,43 @@ def envelope(ensemble, largest_drift, displacement=None):
         {
             "marker_envelope": edges,
             "marker_displacement": quantiles,
-            **{name: over_samples(counted[name], probabilities) for name in _SINGLE},
             "contributing": known.sum("sample"),
             "still_moving": moving,
         }
-    ).transpose("frame", "bound", "quantile", "time", "marker", "body", "joint", "axis")
-    result = result.merge(_probabilities(counted, failed, largest_drift)).merge(
-        _intervals(counted, probabilities)
-    )
+    ).transpose("frame", "bound", "quantile", "time", "marker", "axis")
+    singles = single_figures(ensemble, largest_drift)
+    result = result.merge(singles)
     describe(result, _DESCRIBED)
-    for name in _SINGLE:
-        result[name].attrs = {**ensemble[name].attrs, "ancillary_variables": f"{name}_interval"}
     result["bound"].attrs = {"long_name": "edge of the envelope"}
     result.attrs = {
-        **ensemble.attrs,
+        **singles.attrs,
         "title": "envelope of an ensemble of simulated runs",
         "history": history(
             ensemble.attrs.get("history"), f"study: envelope of {ensemble.sizes['sample']} samples"
         ),
-        "samples": ensemble.sizes["sample"],
-        "counted": counted.sizes["sample"],
-        "confidence": CONFIDENCE,
     }
+    return result
+
+
+def single_figures(ensemble, largest_drift):
+    """The part of an `envelope` that needs no history: statistics of single numbers, with their limits.
+
+    ``ensemble``: all samples, or those of one level, from `join_batches` or `sample_figures`.
+    """
+    counted = counted_samples(ensemble)
+    probabilities = xr.DataArray(list(QUANTILES), dims="quantile", coords={"quantile": list(QUANTILES)})
+    failed = ensemble.sizes["sample"] - counted.sizes["sample"]
+    result = (
+        xr.Dataset({name: over_samples(counted[name], probabilities) for name in _SINGLE})
+        .transpose("frame", "quantile", "marker", "body", "joint")
+        .assign_coords(bound=list(BOUNDS))
+        .merge(_probabilities(counted, failed, largest_drift))
+        .merge(_intervals(counted, probabilities))
+    )
+    for name in _SINGLE:
+        result[name].attrs = {**ensemble[name].attrs, "ancillary_variables": f"{name}_interval"}
+    numbers = {"samples": ensemble.sizes["sample"], "counted": counted.sizes["sample"]}
+    result.attrs = {**ensemble.attrs, **numbers, "confidence": CONFIDENCE}
     return result
 
 

@@ -1,356 +1,276 @@
-"""First section of a study: whether blocks stand, move or fall, how sure that is, why models differ, what is next."""
+"""First section of a study: what stands, how sure that is, which model to use, what is open, and what to do next."""
 
 import numpy as np
 
 from blockshake.pages.blocks import Box, Figure, Heading, Items, Section, Table, Text
 from blockshake.pages.drawing import svg_of
-from blockshake.pages.rows import face_markers
-from blockshake.pages.wording import (
-    MISSING,
-    SQUARED,
-    count_words,
-    given,
-    listed,
-    model_label,
-    number,
-    parameter_label,
-    sentence_case,
-    share_words,
-)
+from blockshake.pages.wording import MISSING, SQUARED, given, model_label, number, parameter_label
+from blockshake.pages.words import Words, length, span, whole_percent
+from blockshake.simulation.models import solver_of
+from blockshake.statistics.intervals import SURE_FROM
+from blockshake.study.comparison.paired import models_apart, theory_of
 from blockshake.study.ensembles.coverage import is_likely
 from blockshake.study.ensembles.envelope import STILL
 from blockshake.study.report.answer_figure import plot_answer
-from blockshake.study.report.case_outcomes import models_apart, most_telling, outcomes, shares_at_impacts
-from blockshake.study.report.open_questions import ALIKE, MOST, next_steps, unknown
+from blockshake.study.report.case_outcomes import evidence, most_telling, outcomes
+from blockshake.study.report.open_questions import MOST, next_steps, unknown
+from blockshake.study.sensitivity.findings import motion_sentences
+
+_WORDS = Words(__name__)
 
 
 def answer(content):
-    """Verdict, three numbers, structure and displacement, a line a case, differences, gaps and next steps: a page."""
-    found = {case.name: ended for case in content.cases.values() if (ended := outcomes(case))}
+    """Verdict, three numbers, structure and displacement, a row a case, differences, gaps and next steps: a page."""
+    stripes = content.stripes
+    found = {one.name: ended for one in stripes if (ended := outcomes(one))}
     if not found:
-        return Section(
-            "Answer", "answer", (*_synthetic(content), Text("No sample of any case has a result."))
-        )
-    shown = content.cases[most_telling(found)]
+        return Section("Answer", "answer", (*_synthetic(content), Text(_WORDS.nothing())))
+    apart, tried = models_apart(stripes, found)
+    theory = {one.stripe: theory_of(_named(stripes, one.stripe), one) for one in reversed(apart)}
+    shown = _named(stripes, most_telling(found))
     blocks = [
         Text(_asked(content)),
-        Box(_verdict(found), _facts(content, found, shown)),
+        Box(_verdict(content, found), _facts(stripes, found, shown, theory)),
         *_synthetic(content),
         _figure(content, found, shown),
-        _lines(content, found),
+        _table(stripes, found),
     ]
-    compared = _measured(content, found)
-    said = [*_why(content, found), *compared]
-    halves = [
-        f"{number(float(one['median']), 2)} times the motion ({name})"
-        for name, one in content.fragility.items()
-        if np.isfinite(one["median"])
-    ]
-    said += [f"Half of the samples fall below {listed(halves)}." for _ in halves[:1]]
+    named = {one.name: one for one in stripes}
     for title, key, sentences in (
+        ("Which model to use", "models-apart", _differences(content, apart, tried, theory, found)),
+        ("Tests and intensities", "beside", (*_measured(content, found), *_intensities(content))),
         ("Blows between blocks that stand apart", "blows", _blows(found)),
-        ("Why the models differ" if not compared else "Models and tests beside each other", "beside", said),
         ("Not known", "not-known", unknown(content)[:MOST]),
-        ("Next", "next", next_steps(content, found)[:MOST]),
+        ("Next", "next", next_steps(content, named, found, apart, theory)[:MOST]),
     ):
         blocks += [Heading(title, key), Items(tuple(sentences))] if sentences else []
     return Section("Answer", "answer", tuple(blocks))
 
 
+def _named(stripes, name):
+    return next(one for one in stripes if one.name == name)
+
+
 def _asked(content):
     """The cases, models and samples in a sentence."""
-    under = dict.fromkeys(_under(content, case) for case in content.cases.values())
-    seconds = dict.fromkeys(f"{given(case.settings['duration'])} s" for case in content.cases.values())
-    cases = f"{listed(list(content.cases))} under {listed(list(under))}, {' or '.join(seconds)}"
-    sizes = [
-        one.samples.sizes["sample"] for case in content.cases.values() for one in case.responses.values()
-    ]
-    few, many = min(sizes), max(sizes)
-    samples = count_words(many, "sample") if few == many else f"{few} to {many} samples"
+    cases = content.cases.values()
+    sizes = [one.samples.sizes["sample"] for case in cases for one in case.responses.values()]
     used = [name for name in content.distributions if content.users(name)]
     kinds = dict.fromkeys(parameter_label(name).split(" of ")[0].split(",")[0] for name in used)
-    if any("records" in content.motions[case.motion].attrs for case in content.cases.values()):
+    if any("records" in content.motions[case.motion].attrs for case in cases):
         kinds |= {"ground motion": None}
-    uncertain = f"Uncertain: {listed(list(kinds))}." if kinds else ""
-    return f"Asked: {cases}, by {_models(content.study['models'])}, {samples} each. {uncertain}".rstrip()
+    return _WORDS.asked(
+        cases=list(content.cases),
+        motions=list(dict.fromkeys(_under(content, case) for case in cases)),
+        seconds=list(dict.fromkeys(given(case.settings["duration"]) for case in cases)),
+        models=list(content.study["models"]),
+        sizes=sorted({min(sizes), max(sizes)}),
+        kinds=list(kinds),
+    )
 
 
 def _under(content, case):
     """Motion of a case with its scale and peak."""
-    peak = f"{number(content.peak_acceleration(case))} m/s{SQUARED}"
-    if count := content.motions[case.motion].attrs.get("records"):
-        return f"{count_words(count, 'record')} of {case.motion} x {given(case.settings['scale'])} (median {peak})"
-    return f"{case.motion} x {given(case.settings['scale'])} ({peak})"
-
-
-def _verdict(found):
-    """Which cases stand, which may collapse and which do, in a sentence."""
-    sides = {"stand": [], "may": [], "fall": [], "open": []}
-    for name, ended in found.items():
-        shares, down = (
-            [one.share for one in ended.values()],
-            any(one.collapsed > one.falling for one in ended.values()),
-        )
-        side = "stand" if not any(shares) else "may" if min(shares) < 1.0 else "fall" if down else "open"
-        sides[side].append(name)
-
-    def named(names, verb):
-        if len(names) == 1:
-            return f"{names[0]} {verb}s"
-        every = {2: "Both"}.get(len(names), f"All {len(names)}")
-        return f"{f'{every} cases' if len(names) == len(found) else listed(names)} {verb}"
-
-    def runs(names):
-        count = sum(one.counted for name in names for one in found[name].values())
-        models = dict.fromkeys(model for name in names for model in found[name])
-        return f"{count_words(count, 'run')} by {_models(models)}"
-
-    words = []
-    if names := sides["stand"]:
-        every = [one for name in names for one in found[name].values()]
-        upper, fewest = max(one.limits[1] for one in every), min(one.counted for one in every)
-        words.append(
-            f"{named(names, 'stand')}: none of {runs(names)} collapses; as few as {count_words(fewest, 'run')} of a "
-            f"case by a model leave a probability of a collapse of up to {_whole(upper)} %"
-        )
-    for name in sides["may"]:
-        by = [
-            f"{share_words(one.collapsed, one.counted)} runs by {model_label(model)}{_falling(one)}"
-            for model, one in found[name].items()
-            if one.collapsed
-        ]
-        others = "" if len(by) == len(found[name]) else ", in none by the others"
-        words.append(f"{name} may collapse: in {listed(by)}{others}")
-    if names := sides["fall"]:
-        words.append(f"{named(names, 'collapse')}: so do all {runs(names)}")
-    if names := sides["open"]:
-        words.append(
-            f"Whether {named(names, 'stand')} is not told: all {runs(names)} still fall as the window ends"
-        )
-    return ". ".join(words) + "."
-
-
-def _models(models):
-    """Names of one model or two, or how many there are: the table of the cases names them."""
-    return listed([*map(model_label, models)]) if len(models) < MOST else f"{len(models)} models"
-
-
-def _facts(content, found, shown):
-    """The three numbers of the box: farthest block, least margin, collapses."""
-    ended, under = found[shown.name], shown.name
-    if any(one.collapsed for one in ended.values()):
-        under += ", until a fall"
-    far = max(ended.values(), key=lambda one: one.peak)
-    near = min(ended.values(), key=lambda one: one.margin if np.isfinite(one.margin) else np.inf)
-    marked, blocks = len(face_markers(shown.structure)), int((~shown.structure.driven).sum())
-    every = {(name, model): one for name in found for model, one in found[name].items()}
-    (worst, by), fell = max(every.items(), key=lambda item: item[1].share)
-    of, where = f"{fell.collapsed} of {fell.counted}", f"{worst} by {model_label(by)}"
-    if not fell.collapsed:
-        fell = min(every.values(), key=lambda one: one.counted)
-        of, where = f"none of {sum(one.counted for one in every.values())}", "in each case by each model"
-    return (
-        (
-            "Farthest from its place on the slab",
-            f"{_range(ended, 'peak', _length)} mm",
-            f"{far.block}; {under}; medians{_ends(ended, 'peak')}; {share_words(marked, blocks)} blocks have markers",
-        ),
-        (
-            "Least margin against overturning",
-            f"{_range(ended, 'margin', _whole)} %" if near.over else MISSING,
-            f"above {near.over}; {_by_leaf(ended)}{under}; medians{_ends(ended, 'margin')}; at rest 100 %, weight "
-            "over the edge 0 %",
-        ),
-        ("Samples that collapse", of, f"{where}: probability {_limits(fell)}, 95 % limits{_falling(fell)}"),
+    return _WORDS.motion(
+        name=case.motion,
+        records=content.motions[case.motion].attrs.get("records", 0),
+        levels=[given(one.level) for one in case.stripes if one.level is not None],
+        intensity=case.settings.get("intensity") or {},
+        scale=given(case.settings["scale"]),
+        peak=f"{number(content.peak_acceleration(case))} m/s{SQUARED}",
     )
 
 
-def _range(ended, name, show):
-    return _from_to([value for one in ended.values() if np.isfinite(value := getattr(one, name))], show)
-
-
-def _from_to(values, show):
-    """Smallest and largest of some values, one where they print alike."""
-    return " to ".join(dict.fromkeys(show(end) for end in (min(values), max(values))))
-
-
-def _by_leaf(ended):
-    """Margins of the leaves of a wall that has several, in words."""
-    told = []
-    for name in next(iter(ended.values())).leaves:
-        ends = [one.leaves[name] for one in ended.values() if np.isfinite(one.leaves[name])]
-        told += [f"{name} {_from_to(ends, _whole)} %"] if ends else []
-    return f"{', '.join(told)}; " if 1 < len(told) <= MOST else ""
-
-
-def _blows(found):
-    """How often blocks that stand apart strike each other and how fast, a sentence a case, and what is not told."""
-    said = []
+def _verdict(content, found):
+    """Cases that stand, that may collapse and that do, in sentences that follow the best evidence."""
+    sides = {"stand": [], "may": [], "fall": [], "open": []}
     for name, ended in found.items():
-        if not any(one.struck for one in ended.values()):
-            continue
-        words = [
-            f"in {share_words(one.struck, one.counted)} samples by {model_label(model)}, at most "
-            f"{count_words(one.blows, 'blow')} in one, the fastest at {one.blow:.2f} m/s ({one.pair})"
-            for model, one in ended.items()
-            if one.struck
-        ]
-        words += ["none by the others"] if len(words) < len(ended) else []
-        said.append(f"{name}: {'; '.join(words)}.")
-    if not said:
-        apart = any(len(one.leaves) > 1 for ended in found.values() for one in ended.values())
-        return ["None in any run that counts."] if apart else []
-    said[MOST:] = []
-    said[-1] += " The force of a blow is not told: it depends on how edges crush, which no model has."
-    return said
+        shares = [one.share for one in ended.values()]
+        down = any(one.collapsed > one.falling for one in ended.values())
+        side = "stand" if not any(shares) else "may" if min(shares) < 1.0 else "fall" if down else "open"
+        sides[side].append(name)
+    best = {name: evidence(ended) for name, ended in found.items()}
+    stand = [(model, one) for name in sides["stand"] for model, one in best[name].items()]
+    told = {name: best[name] | {m: one for m, one in found[name].items() if one.collapsed} for name in found}
+    told = {name: dict(sorted(one.items(), key=lambda item: -item[1].share)) for name, one in told.items()}
+    return _WORDS.verdict(
+        sides={side: content.places(names) for side, names in sides.items()},
+        may=sides["may"],
+        every=[names for names in sides.values() if names] == [list(found)] and len(content.cases),
+        levels=any(case.levels for case in content.cases.values()),
+        stand={
+            "models": list(dict.fromkeys(model for model, _ in stand)),
+            "fewest": min((one.counted for _, one in stand), default=0),
+            "sure": all(one.is_sure for _, one in stand),
+            "upper": max((one.limits[1] for _, one in stand), default=0.0),
+        },
+        told=told,
+        lower=min((one.limits[0] for name in sides["fall"] for one in best[name].values()), default=0.0),
+    )
 
 
-def _ends(ended, name):
-    """Models of the least and of the largest figure, where they differ."""
-    known = {model: value for model, one in ended.items() if np.isfinite(value := getattr(one, name))}
-    ends = [model_label(pick(known, key=known.get)) for pick in (min, max)] if len(known) > 1 else []
-    return f" by {' to '.join(ends)}" if ends else ""
+def _facts(stripes, found, shown, theory):
+    """The three numbers of the box: displacement and margin of the median run, and collapses."""
+    levels = [one.name for one in stripes if one.case is shown.case and one.name in found]
+    used = {name: _used(found[name], theory.get(name)) for name in levels}
+    of_case = [one for ended in used.values() for one in ended.values()]
+    far = max(of_case, key=lambda one: one.most)
+    near = min(of_case, key=lambda one: np.nan_to_num(one.least_margin, nan=np.inf))
+    every = {(name, model): one for name in found for model, one in evidence(found[name]).items()}
+    (worst, model), fell = max(every.items(), key=lambda item: (item[1].share, item[1].limits[1]))
+    case = {
+        "name": shown.case.name,
+        "models": list(dict.fromkeys(model for ended in used.values() for model in ended)),
+        "theory": all(name in theory and theory[name].borne_out for name in levels),
+    }
+
+    def by_level(name, show, unit):
+        ends = levels if len(levels) < MOST else [levels[0], levels[-1]]
+        figures = [span([getattr(one, name) for one in used[at].values()], show) for at in ends]
+        return _WORDS.by_level(
+            [(at.partition(" ")[2], one) for at, one in zip(ends, figures, strict=True)], unit
+        )
+
+    return (
+        (
+            "Largest displacement on the slab, median run",
+            by_level("peak", length, "mm"),
+            _WORDS.displacement(case=case, one=far),
+        ),
+        (
+            "Margin against overturning, median run",
+            by_level("margin", whole_percent, "%") if near.over else MISSING,
+            _WORDS.margin(case=case, one=near, worst=_margin(near.least_margin), leaves=_leaves(of_case)),
+        ),
+        (
+            "Runs that collapse",
+            _WORDS.collapses(one=fell, total=sum(one.counted for one in every.values())),
+            _WORDS.probability(
+                one=fell, place=worst, model=model, several=len(found) > 1, levels=len(levels) > 1
+            ),
+        ),
+    )
 
 
-def _length(value):
-    """A length [m] in mm, whole from 10 mm on."""
-    return f"{1e3 * value:.0f}" if value >= 0.00995 else f"{1e3 * value:.1f}"
+def _used(ended, theory):
+    """Outcome of the model that theory bears out; of the best evidence where it decides for none."""
+    return {theory.borne_out: ended[theory.borne_out]} if theory and theory.borne_out else evidence(ended)
 
 
-def _whole(share):
-    return f"{100.0 * share:.0f}"
+def _leaves(of_case):
+    """Margins of the leaves of a wall in percent, by name."""
+    margins = {name: [one.leaves[name] for one in of_case] for name in of_case[0].leaves}
+    return {name: span(ends, whole_percent) for name, ends in margins.items() if np.isfinite(ends).all()}
 
 
-def _lines(content, found):
-    """A row a case: what its blocks do by every model, and how sure that is."""
-    models = [model for model in content.study["models"] if any(model in ended for ended in found.values())]
-    under, rows = {name: _under(content, content.cases[name]) for name in found}, []
-    for name, ended in found.items():
-        blocks = {one.block for one in ended.values()}
-        case = [name, *(blocks if len(blocks) == 1 else ())]
-        case += [under[name]] if len(set(under.values())) > 1 else []
-        rows.append((
-            ", ".join(case),
-            *(_done(ended[model], len(blocks) > 1) if model in ended else MISSING for model in models),
-        ))  # fmt: skip
+def _table(stripes, found):
+    """A row a stripe and a model that bears limits or collapses: how its runs ended, and how far a block went."""
+    rows = [
+        (
+            name, model_label(model), f"{one.collapsed} of {one.counted}",
+            f"{whole_percent(one.limits[0])} to {whole_percent(one.limits[1])}" if one.is_sure else "too few runs",
+            length(one.peak), f"{length(one.least)} to {length(one.most)}" if one.counted > 1 else "one run",
+            f"{whole_percent(one.margin)} ({_margin(one.least_margin)})" if np.isfinite(one.margin) else MISSING,
+            "" if one.collapsed else length(one.end) if np.isfinite(one.end) else "moves", one.block,
+        )
+        for name, ended in found.items()
+        for model, one in ended.items()
+        if one.is_sure or one.collapsed or not any(other.is_sure for other in ended.values())
+    ]  # fmt: skip
     return Table(
-        "Every case and the block that moves farthest: its largest displacement along x from its place on the slab, "
-        "median of the samples, smallest and largest in brackets, and what is left where it rests at the end; limits "
-        "of 95 % of the probability of a collapse.",
-        ("Case, block", *map(model_label, models)), tuple(rows), "l" * (len(models) + 1), (2.4, *[4] * len(models)),
+        _WORDS.caption(
+            levels=any(one.level is not None for one in stripes),
+            few=SURE_FROM if len(rows) < sum(map(len, found.values())) else 0,
+        ),
+        (
+            "Case", "Model", "Collapsed", "Probability [%]", "Median [mm]", "All runs [mm]", "Margin [%]", "Left [mm]",
+            "Block",
+        ),
+        tuple(rows), "llrrrrrrl", (1.9, 1.5, 1.1, 1.2, 1.0, 1.3, 1.1, 0.8, 1.2),
     )  # fmt: skip
 
 
-def _done(one, named):
-    """Words on the block of an `Outcome`, with its name where it is ``named``."""
-    sure = _limits(one)
-    if one.collapsed:
-        return f"{share_words(one.collapsed, one.counted)} samples collapse{_falling(one)}: {sure}"
-    if one.most < STILL:
-        return f"stands, unmoved; collapse {sure}"
-    left = f", {_length(one.end)} left" if np.isfinite(one.end) else ""
-    spread = f"{_length(one.least)} to {_length(one.most)}" if one.counted > 1 else "1 sample"
-    block = f"{one.block} " if named else ""
-    return f"stands; {block}{_length(one.peak)} mm ({spread}){left}; collapse {sure}"
-
-
-def _limits(one):
-    """Limits of the probability of a collapse, in words."""
-    lower, upper = map(_whole, one.limits)
-    return f"{lower} to {upper} %" if one.collapsed else f"below {upper} %"
-
-
-def _falling(one):
-    """Samples among the collapsed ones that were not down when the window ended, in words."""
-    return f" ({one.falling} still falling)" if one.falling else ""
+def _margin(least):
+    """A margin against overturning in percent; beyond the edge it has no size that tells anything."""
+    return whole_percent(least) if least >= 0.0 else "over"
 
 
 def _figure(content, found, shown):
     one = max(found[shown.name].values(), key=lambda ended: ended.peak)
     structures = {case.settings["structure"]: case.structure for case in content.cases.values()}
-    curve = f"; dashed: {shown.curve_word}" if shown.measured is not None else ""
     return Figure(
-        f"The structures, and {one.block} (red) of {shown.name}: displacement along x from its place on the slab, "
-        f"medians of the samples, and bands from the smallest to the largest{curve}.",
-        svg_of(plot_answer, list(structures.values()), shown, one.marker),
+        _WORDS.figure(case=shown.case, one=one, still=STILL),
+        svg_of(plot_answer, list(structures.values()), shown.case, one.marker),
     )
 
 
-def _why(content, found):
-    """Why the models differ in the case in which they differ most, by what their runs did."""
-    apart = [one for name in found for one in models_apart(content.cases[name], found[name])]
-    if not apart:
-        several = any(len(ended) > 1 for ended in found.values())
-        return ["The models do not differ beyond the limits of their samples."] if several else []
-    falls, _, name, *models = max(apart)
-    case, (near, far) = content.cases[name], map(model_label, models)
-    how = "collapses more often" if falls else "moves the blocks farther"
-    words = [f"in {name} {far} {how} than {near}"]
-    if impacts := shares_at_impacts(case, models):
-        joint, (less, more, plastic) = impacts
-        words.append(
-            f"at {joint}, the joint that opens most, impacts keep {less:.2f} of the spin by {near} and {more:.2f} by "
-            f"{far}; all above it, as one body struck at the other edge alone, keeps {plastic:.2f} (Housner)"
-        )
-        words.append(
-            "impacts do not tell the models apart"
-            if abs(more - less) < ALIKE
-            else f"impacts explain a larger motion by {far}, which loses less"
-            if more > less
-            else f"impacts do not explain it: {far} loses more"
-        )
-    for figure, noun in (("joint_uplift", "opening"), ("joint_slip", "slip")):
-        largest = [
-            case.responses[model].envelope[figure].sel(quantile=0.5).dropna("joint") for model in models
-        ]
-        if all(values.size for values in largest):
-            joints = [str(values["joint"].values[values.argmax("joint")]) for values in largest]
-            sizes = [
-                f"{_length(float(values.max()))} mm by {label}{f' ({joint})' * (joint != joints[-1])}"
-                for values, label, joint in zip(largest, (near, far), joints, strict=True)
-            ]
-            words.append(
-                f"the largest {noun}, median of the samples, is {' and '.join(sizes)} ({joints[-1]})"
-            )
-    return [" ".join(map(sentence_case, words))]
+def _differences(content, apart, tried, theory, found):
+    """Where models differ by more than chance, and which of them theory bears out."""
+    if not any(len(ended) > 1 for ended in found.values()):
+        return ()
+    of_stripe = {one.stripe: one for one in reversed(apart)}
+    first = next((one for one in apart if theory[one.stripe].borne_out), apart[0] if apart else None)
+    return _WORDS.items(
+        "differences",
+        levels=any(case.levels for case in content.cases.values()),
+        apart=list(of_stripe.values())[::-1],
+        found=found,
+        alike=content.places([name for name in tried if name not in of_stripe]),
+        tried=tried,
+        first=first,
+        theory=theory[first.stripe] if first else None,
+        rigid=[one for one in (first.near, first.far) if _is_rigid_contact(one)] if first else [],
+        most=MOST,
+    )
+
+
+def _is_rigid_contact(model):
+    """Whether a model has rigid blocks that meet without springs."""
+    solver = solver_of(model)
+    return solver.rigid and not solver.calibrated
 
 
 def _measured(content, found):
-    """Measured peaks, and of which samples the measured curve may be one more: a sentence, or none."""
-    said, words = [], {}
-    for name, ended in found.items():
-        case = content.cases[name]
-        one = max(ended.values(), key=lambda end: end.peak)
-        if case.measured is None or one.marker not in case.measured["marker"].values:
+    """Measured displacement of each case, and the models whose samples it may be one more of."""
+    rows = []
+    for name, case in content.cases.items():
+        if case.measured is None or name not in found:
             continue
-        peak = float(case.measured["peak"].sel(frame="slab", marker=one.marker))
+        one = max(found[name].values(), key=lambda end: end.peak)
+        if one.marker not in case.measured["marker"].values:
+            continue
         fits = {}
-        for model in ended:
+        for model in found[name]:
             comparison = case.responses[model].comparison
             chance = float(comparison["curve_probability"].sel(marker=one.marker))
             if np.isfinite(chance):
-                fits[model_label(model)] = is_likely(chance, int(comparison.attrs["counted"]))
-        like = [label for label, fit in fits.items() if fit]
-        if len(fits) > 1 and len(like) in (0, len(fits)):
-            like = [f"all {len(fits)} models"]
-        word = "like" if any(fits.values()) else "unlike"
-        words[case.curve_word] = None
-        told = f", {word} {listed(like or [*fits])}" if fits else ""
-        said.append(f"{name}, {one.block} moves by {_length(peak)} mm{told}")
-    return [f"{sentence_case(' and '.join(words))[:-1]}: {'; '.join(said)}."] if said else []
+                fits[model] = is_likely(chance, int(comparison.attrs["counted"]))
+        peak = float(case.measured["peak"].sel(frame="slab", marker=one.marker))
+        rows.append({"case": case, "one": one, "peak": peak, "fits": fits})
+    return _WORDS.items("measured", rows[:MOST])
+
+
+def _intensities(content):
+    """Intensities at which half of the samples reach a potential collapse, and what the motion explains."""
+    ladders = [
+        (name, one.attrs["largest_drift"], float(one["median"]))
+        for name, one in content.fragility.items()
+        if np.isfinite(one["median"])
+    ]
+    return (*_WORDS.items("intensities", ladders=ladders, study=content.study), *motion_sentences(content))
+
+
+def _blows(found):
+    """How often blocks that stand apart strike each other and how fast, a sentence a case, and what is not told."""
+    struck = {name: ended for name, ended in found.items() if any(one.struck for one in ended.values())}
+    apart = any(len(one.leaves) > 1 for ended in found.values() for one in ended.values())
+    return _WORDS.items("blows", struck=dict(list(struck.items())[:MOST]), apart=apart)
 
 
 def _synthetic(content):
     """Remark on curves and motions that nobody measured."""
-    cases, words = content.cases.values(), []
-    tests = [case.name for case in cases if case.synthetic]
-    of = "" if len(tests) == len(cases) else f" of {', '.join(tests)}"
+    cases = content.cases.values()
     motions = sorted({case.motion for case in cases if content.motions[case.motion].attrs.get("synthetic")})
-    if motions:
-        words.append(f"The ground motions are synthetic, not recorded: {', '.join(motions)}.")
-    if tests:
-        words.append(
-            f"The measured curves{of} are SYNTHETIC: runs of this program seen through noisy markers, with an "
-            "effect that the models may lack. They tell nothing about reality."
-        )
-    return [Text(" ".join(words), strong=True)] if words else []
+    tests = [case.name for case in cases if case.synthetic]
+    words = _WORDS.synthetic(motions=motions, tests=tests, every=len(tests) == len(cases))
+    return [Text(words, strong=True)] if words else []

@@ -1,5 +1,8 @@
 """Picture of the first page: the structures, and the block that moves farthest by every model."""
 
+import numpy as np
+
+from blockshake.dynamics.system import FALLEN
 from blockshake.measurement.sensors.markers import marker_position
 from blockshake.pages.drawing import BLUE, GREEN, MEASURED, ORANGE, RED, new_figure
 from blockshake.pages.scene.projection import Scene
@@ -7,7 +10,9 @@ from blockshake.pages.scene.structure_picture import draw_blocks
 from blockshake.pages.wording import model_label
 
 _COLORS = (BLUE, ORANGE, GREEN, RED)
-_HEIGHT = 0.042  # m of paper
+_HEIGHT = 0.036  # m of paper
+_BESIDE = 0.02  # of a level, between models drawn at it
+_LEAST = 0.1  # mm, drawn for all that moves less
 _IN_A_ROW, _CURVES = 4, 6.0  # structures, and width of the curves over that of one
 
 
@@ -15,7 +20,8 @@ def plot_answer(structures, case, marker):
     """Figure of structures in space, and of a marker's displacement along x relative to the slab.
 
     ``structures``: list of `Structure`; ``case``: `ReportedCase`, whose structure is among them. By model, the median
-    of the samples and a band from the smallest to the largest at each time; the measured curve is dashed.
+    of the samples and a band from the smallest to the largest at each time; the measured curve is dashed. Where the
+    samples are scaled to levels, the largest displacement of each of them over the level.
     """
     figure = new_figure(_HEIGHT)
     across = min(len(structures), _IN_A_ROW)
@@ -38,6 +44,41 @@ def plot_answer(structures, case, marker):
         axes.set(aspect="equal", anchor="S")
         axes.autoscale_view()
     curves = right.subplots()
+    if case.levels:
+        _draw_levels(curves, case, marker)
+    else:
+        _draw_histories(curves, case, marker)
+    right.legend(
+        *curves.get_legend_handles_labels(),
+        loc="outside upper right",
+        ncols=5,
+        fontsize=6.0,
+        handlelength=1.2,
+        columnspacing=0.8,
+    )
+    return figure
+
+
+def _draw_levels(axes, case, marker):
+    """Largest displacement of every run over its level, models beside each other; crosses are those that collapsed."""
+    for place, ((model, one), color) in enumerate(zip(case.responses.items(), _COLORS, strict=False)):
+        at = np.array([case.levels[int(sample)] for sample in one.samples["sample"].values])
+        at *= 1.0 + _BESIDE * (place - 0.5 * (len(case.responses) - 1))
+        peak = np.maximum(1e3 * one.samples["peak"].sel(frame="slab", marker=marker).to_numpy(), _LEAST)
+        fell = np.isin(one.samples["status"].values, FALLEN)
+        axes.plot(
+            at[~fell], peak[~fell], "o", color=color, markersize=3.0, alpha=0.7, label=model_label(model)
+        )
+        axes.plot(at[fell], peak[fell], "x", color=color, markersize=4.0)
+    levels = sorted(set(case.levels.values()))
+    name = case.settings["intensity"]["measure"].upper()
+    axes.set(xlabel=f"{name} [{case.level_unit}]", ylabel="largest [mm]", xscale="log", yscale="log")
+    axes.set_xticks(levels, [f"{one:g}" for one in levels])
+    axes.set_xticks([], minor=True)
+    axes.yaxis.set_major_formatter("{x:g}")
+
+
+def _draw_histories(curves, case, marker):
     for (model, one), color in zip(case.responses.items(), _COLORS, strict=False):
         at = one.envelope.sel(frame="slab", marker=marker, axis="x")
         bounds = (1e3 * at["marker_envelope"].sel(bound=bound) for bound in ("lower", "upper"))
@@ -52,12 +93,3 @@ def plot_answer(structures, case, marker):
         measured = case.measured["displacement"].sel(frame="slab", marker=marker)
         curves.plot(case.measured["time"], 1e3 * measured, label=case.curve_word, **MEASURED)
     curves.set(xlabel="time [s]", ylabel="from place [mm]", xlim=(0.0, case.settings["duration"]))
-    right.legend(
-        *curves.get_legend_handles_labels(),
-        loc="outside upper right",
-        ncols=5,
-        fontsize=6.0,
-        handlelength=1.2,
-        columnspacing=0.8,
-    )
-    return figure

@@ -1,21 +1,25 @@
 """Content of the report of a study, read from its files into one structure."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import NamedTuple
 
+import numpy as np
 import pandas as pd
 import xarray as xr
 
-from blockshake.dynamics.record_set import record_files
+from blockshake.dynamics.record_set import DrawnMotions, record_files
 from blockshake.files import content_digest, file_digest, load_json, named_file
 from blockshake.geometry.structure import Structure, load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.sensors import markers
 from blockshake.pages.origin import software_versions
+from blockshake.pages.wording import SQUARED, given, listed
 from blockshake.store import load_made
 from blockshake.study.analyses import ANALYSES, OF_THE_PAPER
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.ensemble import measured_curves
+from blockshake.study.ensembles.envelope import single_figures
 from blockshake.study.sampling.distributions import load_distributions
 from blockshake.study.sampling.sample_parameters import has_parameter
 from blockshake.study.sampling.sample_table import load_design
@@ -35,6 +39,24 @@ class Response:
     cloud: xr.Dataset | None = None
     limits: xr.Dataset | None = None  # from `limit_states_of_case`, where the study has limit states
 
+    def at(self, levels, level):
+        """The samples of one level, and their statistics without histories; ``levels``: by sample."""
+        here = np.array([levels[int(sample)] == level for sample in self.samples["sample"].values])
+        samples = self.samples.isel(sample=np.flatnonzero(here))
+        drift = self.envelope["drift_probability"].attrs["largest_drift"]
+        # whether a block still moves is known of all levels together alone
+        envelope = single_figures(samples, drift).assign(still_moving=self.envelope["still_moving"])
+        return replace(self, envelope=envelope, samples=samples)
+
+
+class Stripe(NamedTuple):
+    """A case, or its samples of one level: one unit of the report, since levels are never pooled."""
+
+    name: str  # of the case, with the level in words
+    case: "ReportedCase"
+    level: float | None  # in the unit of the measure of intensity
+    responses: dict  # str to Response; by model, those of the level
+
 
 @dataclass(frozen=True)
 class ReportedCase:
@@ -53,6 +75,29 @@ class ReportedCase:
     marker_noise: float  # standard deviation of the measured markers, or of the optical system's [m]
     responses: dict  # str to Response; by model
     differences: xr.Dataset  # xarray.Dataset; from `compare_models`
+    levels: dict = field(default_factory=dict)  # level by sample, where the samples are scaled to some
+
+    @property
+    def stripes(self):
+        """`Stripe` of every level, the lowest first; one of the whole case where it has no levels."""
+        if not self.levels:
+            return (Stripe(self.name, self, None, self.responses),)
+        return tuple(
+            Stripe(
+                self.at_levels([level]), self, level,
+                {model: one.at(self.levels, level) for model, one in self.responses.items()},
+            )
+            for level in sorted(set(self.levels.values()))
+        )  # fmt: skip
+
+    def at_levels(self, levels):
+        """Name of the case with some of its levels: ``stack at 3 and 6 m/s2``."""
+        return f"{self.name} at {listed([*map(given, levels)])} {self.level_unit}"
+
+    @property
+    def level_unit(self):
+        """Unit of the levels."""
+        return "m/s" if self.settings["intensity"]["measure"] == "pgv" else f"m/s{SQUARED}"
 
     @property
     def curve_word(self):
@@ -98,6 +143,22 @@ class Content:
     changes: dict
     digests: dict  # str to str; of input files and of tables that all samples come from, by path
     versions: dict  # str to str; of the software that made the report
+
+    @property
+    def stripes(self):
+        """`Stripe` of every case and level, in order."""
+        return [stripe for case in self.cases.values() for stripe in case.stripes]
+
+    def places(self, names):
+        """Names of some stripes, those of one case together: ``block at 3 m/s2``, ``stack at 3 and 6 m/s2``."""
+        chosen = {}
+        for one in self.stripes:
+            if one.name in names:
+                chosen.setdefault(one.case.name, []).append(one.level)
+        return [
+            name if levels == [None] else self.cases[name].at_levels(levels)
+            for name, levels in chosen.items()
+        ]
 
     def peak_acceleration(self, case):
         """Peak ground acceleration of a case's scaled motion, or the median of those that its samples draw [m/s2]."""
@@ -193,7 +254,22 @@ def _case(study, read, name, settings):
         marker_noise=marker_noise,
         responses=responses,
         differences=read["differences"][name, None],
+        levels=_levels(settings, study["ensemble"]["seed"], responses),
     )
+
+
+def _levels(settings, seed, responses):
+    """Level that each sample is scaled to, by sample; empty where no level has two samples or none is asked for."""
+    if settings.get("intensity") is None:
+        return {}
+    drawn = DrawnMotions.of(settings)
+    samples = {int(one) for response in responses.values() for one in response.samples["sample"].values}
+    levels = {sample: drawn.draw(sample, seed).level for sample in sorted(samples)}
+    if None in levels.values() or (
+        not drawn.intensity.levels and len(set(levels.values())) * 2 > len(levels)
+    ):
+        return {}
+    return {sample: settings["scale"] * level for sample, level in levels.items()}
 
 
 def _calibrated(stiffness_of, waves_of):

@@ -80,15 +80,15 @@ def probability_table(content):
     """Collapse, drift beyond the limit, peak and rotation of the top block of every leaf, with 95 % intervals."""
     needed = ", ".join(f"{100 * one:.0f} % needs {samples_needed(one)}" for one in _SHOWN)
     rows = []
-    for case in content.cases.values():
+    for stripe in content.stripes:
         for (body, marker), (model, response) in product(
-            top_markers(case.structure).items(), case.responses.items()
+            top_markers(stripe.case.structure).items(), stripe.responses.items()
         ):
             one = response.envelope
             counted, failed = one.attrs["counted"], one.attrs["samples"] - one.attrs["counted"]
             top = one.sel(marker=marker, body=body)
             rows.append((
-                f"{case.name}, {marker}", model_label(model),
+                f"{stripe.name}, {marker}", model_label(model),
                 f"{counted} + {failed} failed" if failed else str(counted),
                 _bounded(top, "collapse_probability", percent), _bounded(top, "drift_probability", percent),
                 *(_bounded(top.sel(frame="slab", quantile=q), "peak", _thousandths) for q in _SHOWN),

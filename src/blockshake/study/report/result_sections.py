@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.pages.blocks import Figure, Heading, Section, Table, Text
 from blockshake.pages.drawing import svg_of
-from blockshake.pages.rows import face_markers
+from blockshake.pages.rows import bodies_by_height, face_markers
 from blockshake.pages.wording import (
     MISSING,
     SHOWN_QUANTILES,
@@ -16,14 +16,17 @@ from blockshake.pages.wording import (
     quantile_range,
     share_words,
 )
+from blockshake.pages.words import length, span
 from blockshake.simulation.run_histories import RARELY
 from blockshake.study.comparison.tables import block_tables
 from blockshake.study.ensembles.displacement_figure import plot_displacements
-from blockshake.study.report.moving import moving_samples, plot_still, usual_magnification
+from blockshake.study.ensembles.envelope import counted_samples
+from blockshake.study.ensembles.moving import moving_samples, plot_still, usual_magnification
 from blockshake.study.sensitivity.findings import quiet_markers
 
 _HIGH = 0.95  # quantile of the figures of joints
-_OF_JOINTS = {"joint_compression": 1e-3, "joint_uplift": 1e3, "joint_slip": 1e3}  # factors from SI
+_OF_JOINTS = {"joint_compression": "N", "joint_uplift": "m", "joint_slip": "m"}
+_ROWS, _JOINTS = 4, 6  # blocks of a figure, and joints of a table: those that move most
 
 
 def responses(content):
@@ -44,15 +47,24 @@ def responses(content):
 
 def _response(case):
     markers = face_markers(case.structure)
-    envelopes = {model: one.envelope for model, one in case.responses.items()}
-    blocks, marked = int((~case.structure.driven).sum()), len(markers)
-    every = "every block" if marked == blocks else f"the {marked} of {blocks} blocks that have a marker"
+    blocks, drawn = (
+        int((~case.structure.driven).sum()),
+        bodies_by_height(case.structure, markers, _ROWS)[::-1],
+    )
+    some = "every block" if blocks == len(drawn) else f"{len(drawn)} of {blocks} blocks, one of a height"
 
     def figure(frame, caption):
-        shown = envelopes, case.measured, list(markers.values()), list(markers), frame, case.synthetic
+        envelopes = {model: one.envelope for model, one in case.responses.items()}
+        shown = envelopes, case.measured, [markers[body] for body in drawn], drawn, frame, case.synthetic
         return Figure(caption, svg_of(plot_displacements, *shown))
 
-    beside = f"{case.name}: displacement in the inertial frame, in which the coverage is read."
+    curves = (
+        []
+        if case.levels
+        else [figure("slab", f"{case.name}: displacement relative to the slab's marker, {some}.")]
+    )
+    tables = [_levels_table(case)] if case.levels else block_tables(case)
+    compared = f"{case.name}: displacement in the inertial frame, in which the coverage is read."
     return [
         Heading(case.title, f"response-{case.name}"),
         Text(
@@ -60,12 +72,28 @@ def _response(case):
             + _noise(case)
         ),
         *band_remarks(case, markers.values()),
-        figure("slab", f"{case.name}: displacement relative to the slab's marker, {every}."),
+        *curves,
         *_moving(case),
-        *block_tables(case),
-        *joints_table(case),
-        *([] if case.measured is None else [figure("inertial", beside), coverage_table(case)]),
+        *tables,
+        *(table for stripe in case.stripes for table in joints_table(stripe)),
+        *([] if case.measured is None else [figure("inertial", compared), coverage_table(case)]),
     ]
+
+
+def _levels_table(case):
+    """Largest displacement of every block by level, median of the runs with the smallest and the largest."""
+    rows = []
+    for stripe in case.stripes:
+        counted = {model: counted_samples(one.samples)["peak"] for model, one in stripe.responses.items()}
+        for body, marker in face_markers(case.structure).items():
+            peaks = [one.sel(frame="slab", marker=marker) for one in counted.values()]
+            cells = (f"{length(one.median())} ({span(one.values)})" if one.size else MISSING for one in peaks)
+            rows.append((stripe.name, body, *cells))
+    return Table(
+        f"{case.name}: largest displacement of every block along x from its place on the slab [mm], by level: median "
+        "of the runs, smallest to largest in brackets.",
+        ("Level", "Block", *map(model_label, case.responses)), tuple(rows), "ll" + "r" * len(case.responses),
+    )  # fmt: skip
 
 
 def _moving(case):
@@ -138,31 +166,44 @@ def coverage_table(case):
     )  # fmt: skip
 
 
-def joints_table(case):
-    """Table of a case's joints, in a list; an empty one where no sample of any model has a result."""
+def joints_table(stripe):
+    """Table of the joints of a case or of one of its levels that open and slip most, in a list; empty without runs."""
     envelopes = {
-        model: one.envelope for model, one in case.responses.items() if int(one.envelope.attrs["counted"])
+        model: one.envelope.sel(quantile=_HIGH)
+        for model, one in stripe.responses.items()
+        if int(one.envelope.attrs["counted"])
     }
     if not envelopes:
         return []
+    moved = sum(
+        (one["joint_uplift"] + one["joint_slip"]).fillna(0.0) for one in envelopes.values()
+    ).to_numpy()
+    joints = next(iter(envelopes.values()))["joint"].values
+    chosen = sorted(np.argsort(-moved, kind="stable")[:_JOINTS], reverse=True)
     rows = [
-        (str(joint), *(_joint_cell(one.sel(joint=joint, quantile=_HIGH)) for one in envelopes.values()))
-        for joint in reversed(next(iter(envelopes.values()))["joint"].values)
+        (
+            str(joints[at]),
+            model_label(model),
+            *(_joint_cell(one[name][at], unit) for name, unit in _OF_JOINTS.items()),
+        )
+        for at in chosen
+        for model, one in envelopes.items()
     ]
-    labels = (f"{model_label(model)} (n = {int(one.attrs['counted'])})" for model, one in envelopes.items())
+    some = (
+        "the joints"
+        if len(chosen) == len(joints)
+        else f"the {len(chosen)} of {len(joints)} joints that move most"
+    )
     return [
         Table(
-            f"{case.name}: compression [kN] / uplift [mm] / slip [mm] of the joints from the top down, "
-            f"{quantile_percent(_HIGH)} quantile over the samples that did not fail. Compression: normal force that "
-            f"is exceeded for {100.0 * RARELY:g} % of the time, so that it leaves impacts out; uplift and slip: the "
-            "largest at the middle of the face.",
-            ("Joint", *labels),
-            tuple(rows),
-            "l" + "r" * len(envelopes),
+            f"{stripe.name}: {some}, from the top down, {quantile_percent(_HIGH)} quantile over the samples that did "
+            f"not fail. Compression: normal force that is exceeded for {100.0 * RARELY:g} % of the time, so that it "
+            "leaves impacts out; uplift and slip: the largest at the middle of the face.",
+            ("Joint", "Model", "Compression [kN]", "Uplift [mm]", "Slip [mm]"), tuple(rows), "llrrr",
         )
-    ]
+    ]  # fmt: skip
 
 
-def _joint_cell(at):
-    shown = [factor * float(at[name]) for name, factor in _OF_JOINTS.items()]
-    return " / ".join(map(number, shown)) if np.isfinite(shown).all() else MISSING
+def _joint_cell(value, unit):
+    """A figure of a joint, a length in mm or a force in kN."""
+    return length(value) if unit == "m" else number(1e-3 * value)

@@ -11,7 +11,7 @@ SHOWN = {
     "rank_correlation": ("peak", "partial rank correlation with the peak [1]", (-1.05, 1.05), (-0.5, 0.5)),
 }
 _COLORS = {"first_order": BLUE, "rank_correlation": RED}
-_ROW = 0.003  # m of paper, of one variable
+_ROW = 0.0036  # m of paper, of one variable
 
 
 def plot_sensitivity(sensitivities, markers, noise, measure):
@@ -53,7 +53,7 @@ def plot_sensitivity(sensitivities, markers, noise, measure):
         line[0].set_ylabel(f"{model_label(model)}, n = {int(result['used'].sel(quantity=quantity))}")
         line[0].set_yticks(range(len(variables)), [parameter_label(name) for name in variables])
         for text, control in zip(line[0].get_yticklabels(), result["control"].values, strict=True):
-            text.set(fontsize=5.5, color=DARK_GREY if control else "black")
+            text.set(fontsize=6.5, color=DARK_GREY if control else "black")
     panels[-1, panels.shape[1] // 2].set_xlabel(label)
     panels[0, 0].set_ylim(len(variables) - 0.4, -0.6)
     figure.align_ylabels(panels[:, 0])

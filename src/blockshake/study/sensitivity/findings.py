@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.pages.rows import bodies_by_height, face_markers
-from blockshake.pages.wording import millimetres, number, parameter_label, percent
+from blockshake.pages.wording import listed, millimetres, model_label, number, parameter_label, percent
+from blockshake.study.ensembles.envelope import STILL
 
 SHARED = 0.05  # r squared of two variables beyond which they are said to share their indices
 _TOLD = 3  # pairs of such variables
@@ -136,3 +137,43 @@ def influence_words(one):
     control = ", a control" if one.control else ""
     limits = f" [{one.lower:.2f}, {one.upper:.2f}]" if np.isfinite([one.lower, one.upper]).all() else ""
     return f"{parameter_label(one.parameter)}{control} {one.value:.2f}{limits}"
+
+
+def explained_by_motion(case):
+    """Share of the spread of the largest displacement that record and level explain, by model [1].
+
+    Of cases whose samples draw motions: adjusted R squared of the logarithm of the demand on level and record, or on
+    the logarithm of the intensity where there are no levels. Models with too few samples are left out.
+    """
+    shares = {}
+    for model, one in case.responses.items():
+        cloud = one.cloud
+        if cloud is None or not case.levels:
+            continue
+        demand = np.log(np.maximum(cloud["demand"].to_numpy(), STILL))
+        groups = [
+            cloud["record"].values.astype(str),
+            np.array([case.levels[int(sample)] for sample in cloud["sample"].values]),
+        ]
+        columns = [np.ones(len(demand))]
+        columns += [(group == value) + 0.0 for group in groups for value in np.unique(group)[1:]]
+        design = np.array(columns).T
+        freedom, total = len(demand) - design.shape[1], float(((demand - demand.mean()) ** 2).sum())
+        if freedom < 3 or total == 0.0:
+            continue
+        left = demand - design @ np.linalg.lstsq(design, demand, rcond=None)[0]
+        shares[model] = max(0.0, 1.0 - float(left @ left) / freedom / (total / (len(demand) - 1)))
+    return shares
+
+
+def motion_sentences(content):
+    """Share that record and level explain, a sentence a case whose samples are scaled to levels of several records."""
+    for name, case in content.cases.items():
+        if shares := explained_by_motion(case):
+            known = " to ".join(
+                dict.fromkeys(f"{100.0 * end:.0f}" for end in (min(shares.values()), max(shares.values())))
+            )
+            yield (
+                f"{name}: record and level explain {known} % of the spread of the largest displacement "
+                f"({listed([*map(model_label, shares)])}). The sampled properties explain at most the rest."
+            )

@@ -6,6 +6,7 @@ from blockshake.pages.wording import model_label, number
 from blockshake.study.sensitivity.figure import SHOWN, is_shown, plot_sensitivity
 from blockshake.study.sensitivity.findings import (
     markers_by_height,
+    motion_sentences,
     sentence,
     shared_words,
 )
@@ -13,7 +14,9 @@ from blockshake.study.sensitivity.findings import (
 
 def sensitivities(content):
     """Influence of each random variable on the thickness of the envelopes, case by case."""
+    of_motion = tuple(motion_sentences(content))
     blocks = [
+        *([Items(of_motion)] if of_motion else []),
         Text(
             "Two measures tell where the differences between samples come from. The first-order Sobol index of the "
             "history of a block is the share of the thickness of its envelope, as variance over all times, that one "
