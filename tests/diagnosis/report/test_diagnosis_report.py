@@ -88,7 +88,7 @@ def test_synthetic_is_said_where_it_shows(pages, kind):
 def test_the_box_has_the_numbers_of_the_verdict(fakes, documents):
     verdict = load_verdict(fakes["named"].results / "verdict.json")
     facts = [value for _, value, _ in documents["named"].sections[0].blocks[0].facts]
-    assert facts == ["less than 1 in a million", "50 mm (45.0 to 55.0) towards +x", "80 % (70 to 90 %)"]
+    assert facts == ["less than 1 in a million", "50 mm (45.0 to 55.0) towards +x", "60 % (50 to 70 %)"]
     assert verdict.misfit.p == 1e-12
     assert verdict.parameters["eccentricity"]["offset"].estimate == 0.05
     assert verdict.row_gain.recalibrated.estimate == 0.8
@@ -98,7 +98,7 @@ def test_the_card_of_the_gain_agrees_with_the_table(found):
     """A recalibrated model without an error to remove stands beside a gain over the nominal one."""
     one = found["named"]
     gain = one.verdict.row_gain.model_copy(update={"recalibrated": NOTHING_TO_GAIN})
-    again = replace(one, verdict=one.verdict.model_copy(update={"row_gain": gain}))
+    again = replace(one, verdict=one.verdict.model_copy(update={"row_gain": gain, "gain": None}))
     document = compose_diagnosis(again)
     _, value, note = document.sections[0].blocks[0].facts[2]
     assert value == "no error to remove"
@@ -106,6 +106,17 @@ def test_the_card_of_the_gain_agrees_with_the_table(found):
     rows = dict(row[:2] for row in blocks_of(document, "table", "gain")[0].rows)
     assert rows["the nominal model"] == "80 % (70 to 90 %)"
     assert rows["the nominal model, recalibrated on the open tests"] == value
+
+
+def test_a_gain_on_forces_is_no_headline_where_that_on_responses_may_be_nothing(found):
+    one = found["named"]
+    nothing = one.verdict.gain.recalibrated.model_copy(update={"estimate": 0.0, "lower": -0.1, "upper": 0.1})
+    gain = one.verdict.gain.model_copy(update={"recalibrated": nothing})
+    document = compose_diagnosis(replace(one, verdict=one.verdict.model_copy(update={"gain": gain})))
+    _, value, note = document.sections[0].blocks[0].facts[2]
+    assert value == "none shown"
+    assert "0 % (-10 to 10 %)" in note
+    assert note.endswith("on forces 80 % (70 to 90 %)")
 
 
 def test_none_says_which_sizes_would_have_been_seen(documents):
@@ -233,7 +244,7 @@ def test_a_sensor_s_fault_alone_is_the_answer(tmp_path):
     one = load_diagnosed(*FakeDiagnosis(tmp_path, "none", findings=[gain_finding()]).arguments())
     assert one.verdict.decision == "named"
     assert statement(one).startswith("Probable: gain of a marker (block-2-face), error 3")
-    assert "hold no force that sound blocks would not make" in statement(one)
+    assert "undamaged blocks make all forces" in statement(one)
     document = compose_diagnosis(one)
     (table,) = blocks_of(document, "table", "sensors")
     assert table.rows[0][:4] == ("gain of a marker", "block-2-face", "gain", "3 % (0.10 %)")

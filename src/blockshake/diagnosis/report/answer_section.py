@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.diagnosis.report.statement import changed, not_told, statement
+from blockshake.diagnosis.report.statement import changed, not_told, statement, until_then
 from blockshake.diagnosis.wording import NO_ERROR, chance_words, estimate_words, name_of, percent_words
 from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import BLACK, BLUE, LIGHT_GREY, new_figure, svg_of
@@ -38,7 +38,8 @@ def answer_section(diagnosed):
             )
         )
     items = _items(diagnosed)
-    further = [*([Items(items)] if items else []), *next_tests_table(diagnosed.verdict)]
+    now = Text(until_then(diagnosed))
+    further = [*([Items(items)] if items else []), *next_tests_table(diagnosed.verdict), now]
     return Section("Answer", "answer", (*blocks, *further, *_figures(diagnosed)))
 
 
@@ -58,15 +59,20 @@ def _size_fact(decision):
 
 
 def _gain_fact(verdict):
-    label = "Error on sealed tests that the cause removes"
-    gain = verdict.row_gain
+    """Gain on the responses, or where these were not measured on forces; a gain that may be nothing is none."""
+    label, gain = "Error on sealed tests that the cause removes", verdict.gain or verdict.row_gain
     if gain is None:
         reasons = [one for one in verdict.caveats if "gain was measured" in one]
         return label, "not measured", (reasons or ["nothing acts that could explain any"])[0]
-    words = "on forces, of the recalibrated model's error; size frozen before; 90 % interval"
+    of = "responses" if verdict.gain else "forces alone"
     removed, of_nominal = map(percent_words, (gain.recalibrated, gain.nominal))
+    words = f"on {of}, of the recalibrated model's error; 90 % interval"
     if removed == NO_ERROR:
-        words = f"the recalibrated model's forces are within their errors; of the nominal model's error: {of_nominal}"
+        words = f"the recalibrated model's {of.split()[0]} are within their errors; of the nominal model's error: {of_nominal}"
+    elif gain.recalibrated.lower <= 0.0:
+        removed, words = "none shown", f"{words}: {removed}"
+    if verdict.gain and verdict.row_gain:
+        words += f"; on forces {percent_words(verdict.row_gain.recalibrated)}"
     return label, removed, words
 
 
@@ -127,9 +133,9 @@ def _forces(diagnosed, causes):
     left_out = [name for name in diagnosed.decision.tests if name not in tests]
     titles = " and ".join(one.title for one in causes if shown["explained"].any())
     words = (
-        "Forces that sound blocks do not make, where a joint turns, slips or lifts: the horizontal force that "
+        "Forces that undamaged blocks do not make, where a joint turns, slips or lifts: the horizontal force that "
         f"would have to act at the middle of {' or of '.join(bodies)}, if all of it acted there. Black: "
-        f"{diagnosed.measured_word}. {f'Blue: {titles} at the likeliest size. ' if titles else ''}Without a cause "
+        f"{diagnosed.measured_word}. {f'Blue: {titles} at the most probable size. ' if titles else ''}Without a cause "
         "there is none: the line at 0. Grey: two standard deviations of the sensors' noise."
         + (f" Drawn is what lies within {_ABOUT:g} s of a blow." if blows else "")
         + (f" Not drawn: {', '.join(left_out)}." if left_out else "")
@@ -142,7 +148,7 @@ def _slab(diagnosed, part):
     share = ", as far as it follows the horizontal motion" if name == "lift" else ""
     words = (
         f"{sentence_case(part.readings)[:-1]}, from rest. Black: {diagnosed.measured_word}. Blue: {title} at the "
-        f"likeliest size{share}. A sound table makes none: the line at 0."
+        f"most probable size{share}. An undamaged table makes none: the line at 0."
     )
     return Figure(words, svg_of(plot_slab, diagnosed.departures, name, title, diagnosed.measured_word))
 

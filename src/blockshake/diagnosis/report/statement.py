@@ -16,39 +16,51 @@ from blockshake.diagnosis.wording import (
     times_words,
 )
 from blockshake.effects.registry import title_of
-from blockshake.pages.wording import count_words, sentence_case
+from blockshake.pages.wording import sentence_case
+from blockshake.pages.words import Words
 
 _MOST_PLACES = 4
+_STATED = Words(__name__)
 RATIO = round(np.exp(ODDS))  # of odds, within which causes are not told apart
 
 
 def statement(diagnosed):
     """The answer in one sentence: what acts, where, and how large."""
     verdict, decision = diagnosed.verdict, diagnosed.decision
-    word = verdict.word[0].upper() + verdict.word[1:]
-    acting = [
-        "; or ".join(cause_words(one, _places(diagnosed, one)) for one in part.causes)
-        for part in decision.parts
-    ]
-    sensors = sensor_causes(diagnosed)
-    if verdict.word == NOTHING:
-        return f"{word}: {_looked_at(decision)} hold no force that sound blocks would not make."
-    if verdict.word == UNKNOWN:
-        return (
-            f"{word}. No effect of the registry makes these forces; most like {'; beside it '.join(acting)}."
-        )
-    words = "; together with ".join([*sensors, *acting])
-    if verdict.word == ONE_OF:
-        return f"{word} these, which the tests do not tell apart: {words}."
-    rest = (
-        "" if acting else f"; beside it {_looked_at(decision)} hold no force that sound blocks would not make"
+    acting = [[cause_words(one, _places(diagnosed, one)) for one in part.causes] for part in decision.parts]
+    return _STATED.statement(
+        word=verdict.word,
+        kind={NOTHING: "nothing", UNKNOWN: "unknown", ONE_OF: "one of"}.get(verdict.word, "named"),
+        acting=acting,
+        sensors=sensor_causes(diagnosed),
+        rows=decision.n_rows,
+        tests=len(decision.moved or decision.tests),
     )
-    return f"{word}: {words}{rest}."
 
 
-def _looked_at(decision):
-    tests = count_words(len(decision.moved or decision.tests), "test")
-    return f"{count_words(decision.n_rows, 'equation')} of motion in {tests}"
+def until_then(diagnosed):
+    """A factor on drifts of the nominal model to use until the cause is known better, or that none is known.
+
+    The largest over the sealed tests of the upper limit of the drift with the cause over that without it, from the
+    same samples; never below 1.
+    """
+    gain, verdict = diagnosed.gain, diagnosed.verdict
+    factors = {}
+    if gain is not None and "value" in gain and "test" in gain.dims:
+        for test in gain["test"].values:
+            at = gain.sel(test=test, response="median_drift")
+            without = float(at["value"].sel(side="without"))
+            if without > 0.0 and np.isfinite(at["value_interval"]).all():
+                upper = without + at["value_interval"].sel(side="change").to_numpy()[-1]
+                factors[str(test)] = max(1.0, float(upper) / without)
+    worst = max(factors, key=factors.get, default=None)
+    return _STATED.until_then(
+        nothing=verdict.word == NOTHING,
+        factor=factors.get(worst),
+        test=worst,
+        limits=sum(name not in verdict.causes for name in verdict.excluded_above),
+        quick=diagnosed.effort == "quick",
+    )
 
 
 def _places(diagnosed, cause):
@@ -89,28 +101,22 @@ def not_told(diagnosed):
     decision = diagnosed.decision
     if not decision.parts:
         limits = [f"{title_of(name)} {beyond(name, size)}" for name, size in decision.excluded_above.items()]
-        seen = f"These would have been seen wherever they act: {listed(limits)}. " if limits else ""
-        return [f"{seen}Smaller ones, and what has no limit in the table of limits, may act all the same."]
+        return [_STATED.smaller(limits)]
     return [_not_told_from(diagnosed, part) for part in decision.parts]
 
 
 def _not_told_from(diagnosed, part):
     first, *others = part.causes
-    rivals = {name: odds for name, odds in part.odds.items() if odds >= ODDS}
-    if others:
-        names = listed(f"{one.title} ({times_words(one.odds)})" for one in others)
-        words = f"{first.title} is likelier than {names}, and {RATIO} times would tell them apart."
-    elif rivals:
-        nearest = min(rivals, key=rivals.get)
-        words = (
-            f"the tests tell {first.title} from all others that were tried ({count_words(len(rivals), 'cause')}); "
-            f"it is {times_words(rivals[nearest])} likelier than {name_of(nearest)}, the nearest of them."
-        )
-    else:
-        words = "no other cause was tried on these readings."
-    if len(diagnosed.decision.parts) > 1:
-        words = f"{part.readings}: {words}"
-    if len(first.places) > 1:
-        best, among = named_place(first.places[0], diagnosed.bodies), _places(diagnosed, first)
-        words += f" Its {'height' if among in best else f'place, {among},'} is not told; likeliest is {best}."
+    tried = {name: odds for name, odds in part.odds.items() if odds >= ODDS}
+    nearest = min(tried, key=tried.get, default=None)
+    words = _STATED.not_told(
+        part=part.readings if len(diagnosed.decision.parts) > 1 else "",
+        first=first.title,
+        others=[f"{one.title} ({times_words(one.odds)})" for one in others],
+        ratio=RATIO,
+        tried=len(tried),
+        nearest=nearest and {"name": name_of(nearest), "times": times_words(tried[nearest])},
+        places=_places(diagnosed, first) if len(first.places) > 1 else "",
+        best=named_place(first.places[0], diagnosed.bodies) if first.places else "",
+    )
     return words[0].upper() + words[1:]
