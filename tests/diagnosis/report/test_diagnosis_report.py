@@ -102,7 +102,7 @@ def test_the_card_of_the_gain_agrees_with_the_table(found):
     document = compose_diagnosis(again)
     _, value, note = document.sections[0].blocks[0].facts[2]
     assert value == "no error to remove"
-    assert note.endswith("of the nominal model's error: 80 % (70 to 90 %)")
+    assert note.endswith("of the nominal model's: 80 % (70 to 90 %)")
     rows = dict(row[:2] for row in blocks_of(document, "table", "gain")[0].rows)
     assert rows["the nominal model"] == "80 % (70 to 90 %)"
     assert rows["the nominal model, recalibrated on the open tests"] == value

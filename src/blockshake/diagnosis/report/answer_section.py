@@ -68,7 +68,7 @@ def _gain_fact(verdict):
     removed, of_nominal = map(percent_words, (gain.recalibrated, gain.nominal))
     words = f"on {of}, of the recalibrated model's error; 90 % interval"
     if removed == NO_ERROR:
-        words = f"the recalibrated model's error on {of} is within the noise; of the nominal model's error: {of_nominal}"
+        words = f"the recalibrated model's error on {of} is within the noise; of the nominal model's: {of_nominal}"
     elif gain.recalibrated.lower <= 0.0:
         removed, words = "none shown", f"{words}: {removed}"
     if verdict.gain and verdict.row_gain:
