@@ -144,6 +144,15 @@ def test_the_plan_is_what_was_asked_for():
     )
 
 
+def test_the_page_counts_the_sealed_cases():
+    page = " ".join(PAGE.read_text(encoding="utf-8").split())
+    clean = sum(not case.causes for case in PLAN.cases)
+    assert f"The {len(PLAN.cases)} sealed cases" in page
+    assert f"{clean} are clean" in page
+    for name, seeds in (("home", CALIBRATION_SEEDS), ("mujoco", OPEN_SEEDS)):
+        assert f"`{seeds.name}` ({len(load_plan(seeds).cases)}, `{name}`)" in page
+
+
 def test_the_sealed_list_is_what_its_number_draws():
     text = SEEDS.read_text(encoding="utf-8")
     seed = int(text.split("--seed ")[1].split(".")[0])
