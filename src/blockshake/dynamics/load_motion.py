@@ -16,7 +16,7 @@ from blockshake.dynamics.records.cosmos import is_cosmos, read_cosmos
 from blockshake.dynamics.records.csmip import is_csmip, read_csmip
 from blockshake.dynamics.records.dyna import is_dyna, read_dyna
 from blockshake.dynamics.records.knet import is_knet, read_knet
-from blockshake.dynamics.records.record import chosen_records
+from blockshake.dynamics.records.record import chosen_records, one_motion
 from blockshake.dynamics.records.smc import is_smc, read_smc
 from blockshake.dynamics.synthetic_motion import load_synthetic, synthesise
 from blockshake.errors import Argument, InputError
@@ -44,6 +44,7 @@ def load_motion(
     baseline: str | float = AUTO,
     channels: Mapping[str, str] | None = None,
     name: str | None = None,
+    components: Mapping[str, AnyPath] | None = None,
 ) -> GroundMotion:
     """Ground motion from a shipped name, a file or arrays.
 
@@ -60,10 +61,12 @@ def load_motion(
         ``auto``, ``none`` or a corner frequency [Hz], as `settle` takes it: by default a record that does not end at
         rest is corrected, and a CSV never is.
     channels : dict of str to str, optional
-        By axis (``x``, ``y``, ``z``) the name of a record's channel, or its number in the file, from 1. By default the
-        only channel is x.
+        By axis (``x``, ``y``, ``z``) the name of a record's channel, or its number in the file, from 1; a minus before
+        it reverses the channel. By default the only channel is x.
     name : str, optional
         That results use; by default that of the file, or ``arrays``.
+    components : dict of str to path, optional
+        By axis the files of the other components of the record, of one channel each; a minus before a path reverses.
 
     Returns
     -------
@@ -85,7 +88,8 @@ def load_motion(
     if not np.isfinite(scale) or scale == 0.0:
         raise InputError(where, "scale", f"expected a finite number other than 0, found {scale}")
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # looked at below
-        motion = source if isinstance(source, GroundMotion) else _read(source, baseline, channels)
+        given = isinstance(source, GroundMotion)
+        motion = source if given else _read(source, baseline, channels, components or {})
     return scaled(motion if name is None else replace(motion, name=name), scale, where)
 
 
@@ -97,36 +101,58 @@ def scaled(motion, scale, source):
     return motion
 
 
-def _read(source, baseline, channels):
+def _read(source, baseline, channels, components):
     if not isinstance(source, (str, PathLike)):
-        _check_no_channels(channels, _ARRAYS)
+        _check_no_record(channels, components, _ARRAYS)
         motion = _motion_of_rows(motion_of_arrays(source, _ARRAYS), _ARRAYS, "Python")
         return settle(motion, baseline, _ARRAYS)
     path = named_file("motions", source)
     if path.suffix.lower() in (".yaml", ".yml"):
-        _check_no_channels(channels, path)
+        _check_no_record(channels, components, path)
         if baseline not in (AUTO, NONE):
             wrong = f"expected {AUTO} or {NONE} of a synthetic motion, which ends at rest"
             raise InputError(path, "baseline", wrong)
         return synthesise(load_synthetic(path))
     text = read_foreign_text(path)
-    ending = path.suffix.lower()
-    readers = [read for recognises, _, read in _RECORD_FORMATS if recognises(text)]
-    readers += [read for _, begin, read in _RECORD_FORMATS if ending.startswith(begin)]
-    if readers:
-        return _record_motion(
-            chosen_records(readers[0](text, path), channels, path), path, baseline, channels
-        )
-    _check_no_channels(channels, path)
-    if "time_s" in text.partition("\n")[0] or ending == ".csv":
+    records = _records(text, path)
+    if records:
+        chosen = {axis: (path, record) for axis, record in chosen_records(records, channels, path).items()}
+        for axis, other in components.items():
+            if axis in chosen:
+                raise InputError(
+                    Argument("components"), axis, f"expected no second one; {chosen[axis][0]} is {axis}"
+                )
+            chosen[axis] = _component(axis, str(other))
+        return _record_motion(one_motion(chosen), path, baseline, channels, components)
+    _check_no_record(channels, components, path)
+    if "time_s" in text.partition("\n")[0] or path.suffix.lower() == ".csv":
         motion = _motion_of_rows(read_motion_csv(text, path), path.name, "csv")
         kept = motion.attributes | kept_attributes(path, text)
         return settle(replace(motion, attributes=kept), baseline, path)
     raise InputError(
         path, "",
         "expected a motion CSV (time_s, acceleration_x, ...), ESM/ITACA DYNA 1.2, PEER AT2, COSMOS V2, CSMIP V2, "
-        "K-NET/KiK-net ASCII or SMC; `blockshake convert-motion` reads other tables",
+        "K-NET/KiK-net ASCII or SMC; `blockshake convert-motion` reads other tables, "
+        "and with --step values without times",
     )  # fmt: skip
+
+
+def _records(text, path):
+    """`Record` of every channel of a file of a known format; none of another file."""
+    ending = path.suffix.lower()
+    readers = [read for recognises, _, read in _RECORD_FORMATS if recognises(text)]
+    readers += [read for _, begin, read in _RECORD_FORMATS if ending.startswith(begin)]
+    return readers[0](text, path) if readers else []
+
+
+def _component(axis, source):
+    """Path and `Record` of the component along an axis."""
+    path = Path(source.removeprefix("-"))
+    records = _records(read_foreign_text(path), path)
+    if not records:
+        raise InputError(path, "", "expected a record of a known format, as a component of another one")
+    channel = {axis: "-1" if source.startswith("-") else "1"} if len(records) == 1 else None
+    return path, chosen_records(records, channel, path)[axis]
 
 
 def _motion_of_rows(rows, source, form):
@@ -139,19 +165,25 @@ def _motion_of_rows(rows, source, form):
     return ground_motion(Path(source).stem, time - time[0], columns, kind, attributes)
 
 
-def _check_no_channels(channels, path):
+def _check_no_record(channels, components, path):
     if channels:
         wrong = f"expected for a record, or with --unit for a table; {path} is neither"
         raise InputError(Argument("channels"), "", wrong)
+    if components:
+        raise InputError(Argument("components"), "", f"expected beside a record; {path} is none")
 
 
-def _record_motion(records, path, baseline, channels):
+def _record_motion(records, path, baseline, channels, components):
     first = next(iter(records.values()))
     columns = {axis: record.acceleration for axis, record in records.items()}
     time = first.time_step * np.arange(len(first.acceleration))
     attributes = {"source": path.name, "format": first.format, "synthetic": False}
-    assumed = [first.assumed] if channels else ["a component along x", first.assumed]
+    assumed = [] if channels or components else ["a component along x"]
+    assumed += dict.fromkeys(record.assumed for record in records.values())
     attributes |= {"checked": first.checked, "assumed": "; ".join(filter(None, assumed)) or "nothing"}
+    if components:
+        names = (f"{axis}: {Path(other).name}" for axis, other in components.items())
+        attributes["components"] = ", ".join(names)
     if any(record.channel for record in records.values()):
         attributes["channels"] = ", ".join(f"{axis}: {record.channel}" for axis, record in records.items())
     motion = ground_motion(path.stem, time, columns, "acceleration", {**attributes, **first.metadata})

@@ -21,8 +21,15 @@ def add_data_commands(add):
     _add_options(command, ("--unit UNIT", "of a table: m/s2, cm/s2, g, m/s, m, mm, ...; never guessed"))
     command.add_argument(
         "--column", action="append", default=[], metavar="AXIS=COLUMN",
-        help="such as x=EW, repeatable; of a record with several channels x=NUMBER or x=NAME",
+        help="such as x=EW, or x=-EW reversed, repeatable; of a record with several channels x=NUMBER or x=NAME",
     )  # fmt: skip
+    command.add_argument(
+        "--component", action="append", default=[], metavar="AXIS=FILE",
+        help="another component of the record in a file of its own, such as y=NS.AT2, or y=-NS.AT2 reversed",
+    )  # fmt: skip
+    _add_options(
+        command, ("--step S", "between rows without times; without --column all values in order are x")
+    )
     _add_layout(command)
     add_baseline(command)
     command.add_argument("--output", required=True, metavar="MOTION.csv")
@@ -119,22 +126,31 @@ def _convert_motion(options):
     from blockshake.dynamics.load_motion import load_motion, provenance
     from blockshake.dynamics.records.contract_csv import write_motion_csv
     from blockshake.dynamics.records.motion_table import load_motion_table
+    from blockshake.dynamics.records.record import positive_number
     from blockshake.study.remarks import motion_line, motion_remarks
     from blockshake.tables.table_file import TableLayout
     from blockshake.validation import validated
 
     columns = pairs_of(options.column, "--column", "READING=COLUMN")
-    if _given(options, ("unit", "time", "time_unit", *_LAYOUT)):
+    components = pairs_of(options.component, "--component", "AXIS=FILE")
+    if _given(options, ("unit", "step", "time", "time_unit", *_LAYOUT)):
         if not options.unit:
             raise InputError("--unit", "", "expected for a table; the unit and the columns are never guessed")
-        if not columns:
-            raise InputError("--column", "", "expected for a table")
+        if components:
+            raise InputError("--component", "", "expected beside a record, not a table")
+        if options.step and _given(options, ("time", "time_unit")):
+            raise InputError("--step", "", "expected where there are no times")
+        if not columns and not options.step:
+            raise InputError("--column", "", "expected for a table, or --step for values without times")
         motion = load_motion_table(
             options.file, validated(TableLayout, _given(options, _LAYOUT), _MADE), options.time or "time_s",
             columns, options.unit, options.time_unit or "s", options.baseline,
+            positive_number(options.step, "--step", options.step) if options.step else None,
         )  # fmt: skip
     else:
-        motion = load_motion(options.file, baseline=options.baseline, channels=columns or None)
+        motion = load_motion(
+            options.file, baseline=options.baseline, channels=columns or None, components=components
+        )
     done = f"convert-motion: {provenance(motion.attributes)}"
     if Path(options.file).is_file():
         done += f"; digest of {motion.attributes['source']}: {file_digest(options.file)}"

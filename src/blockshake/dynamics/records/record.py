@@ -1,7 +1,7 @@
 """Common result of all record formats: uniform acceleration series in SI, their metadata, and which become axes."""
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -29,6 +29,13 @@ class Record:
     channel: str = ""  # name of the component; empty where the format holds a single one
     # str to str; what the header says of event, station and processing; ``licence`` where stated
     metadata: dict = field(default_factory=dict)
+
+    def turned(self, axis, sign):
+        """This record, or for a ``sign`` of -1 the reversed one, which tells so."""
+        if sign > 0.0:
+            return self
+        assumed = "; ".join(filter(None, (self.assumed, f"{axis} is reversed")))
+        return replace(self, acceleration=-self.acceleration + 0.0, assumed=assumed)
 
     def vertical(self):
         """The text by which the file says that the component is vertical; empty where it does not.
@@ -174,8 +181,8 @@ def chosen_records(records, channels, where):
     records : list of Record
         Of one file.
     channels : dict of str to str, or None
-        By axis (``x``, ``y``, ``z``) the name of a channel, or its number in the file, from 1; None takes the only one
-        as x.
+        By axis (``x``, ``y``, ``z``) the name of a channel, or its number in the file, from 1, behind a minus where it
+        is reversed; None takes the only one as x.
     where : str
         File that a message names.
 
@@ -190,8 +197,9 @@ def chosen_records(records, channels, where):
     listed = "; ".join(
         f"{number}: {record.channel or 'no name'}" for number, record in enumerate(records, start=1)
     )
-    chosen = {}
+    chosen, signs = {}, {}
     for axis, name in (channels or {"x": ""}).items():
+        signs[axis], name = (-1.0, name[1:]) if name.startswith("-") else (1.0, name)
         if axis not in CHANNELS[:3]:
             raise InputError(Argument("channels"), axis, f"expected {', '.join(CHANNELS[:3])}")
         named = [
@@ -212,7 +220,45 @@ def chosen_records(records, channels, where):
     for record in chosen.values():
         if (record.time_step, len(record.acceleration)) != (first.time_step, len(first.acceleration)):
             raise InputError(where, "", f"expected channels of the same time step and length ({listed})")
-    return _horizontal(chosen, where)
+    signed = {axis: record.turned(axis, signs[axis]) for axis, record in chosen.items()}
+    return _horizontal(signed, where)
+
+
+def one_motion(components):
+    """Records by axis from files by axis, of one event and station; the shorter ones rest behind their ends.
+
+    Parameters
+    ----------
+    components : dict of str to tuple
+        By axis a file's path and its `Record`.
+
+    Raises
+    ------
+    InputError
+        Other time steps, or headers that name other events or stations.
+    """
+    (_, (path, first)), *others = components.items()
+    longest = max(len(record.acceleration) for _, record in components.values())
+    for _, (other, record) in others:
+        if record.time_step != first.time_step:
+            wrong = f"expected the time step of {path}, {first.time_step:g} s, found {record.time_step:g} s"
+            raise InputError(other, "", wrong)
+        for name in ("event", "station"):
+            mine, its = (one.metadata.get(name, "").rpartition(",") for one in (first, record))
+            # PEER's event ends with the component, behind the last comma
+            mine, its = (one[0] or one[2] for one in (mine, its))
+            if mine and its and mine.strip().lower() != its.strip().lower():
+                raise InputError(other, name, f"expected that of {path}, '{mine}', found '{its}'")
+    joined = {}
+    for axis, (path, record) in components.items():
+        short = longest - len(record.acceleration)
+        rests = f"{path}: rest for {short * record.time_step:g} s behind its end" if short else ""
+        joined[axis] = replace(
+            record,
+            acceleration=np.pad(record.acceleration, (0, short)),
+            assumed="; ".join(filter(None, (record.assumed, rests))),
+        )
+    return joined
 
 
 def _horizontal(chosen, where):
