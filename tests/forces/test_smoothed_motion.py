@@ -5,8 +5,8 @@ import pytest
 from known_blocks import readings, stack
 
 from blockshake.forces.motion import smooth_motion
-from blockshake.forces.quiet_start import counted_from_rest
 from blockshake.measurement.campaigns.campaign import Sensors
+from blockshake.measurement.sensors.quiet_start import counted_from_rest
 
 FREQUENCY, AMPLITUDE = 2.0, 2.0  # Hz, m/s2
 OFFSET = 0.3  # m/s2, of every accelerometer

@@ -6,7 +6,7 @@ REACH = 4.0  # of the kernel's standard deviation: what lies beyond has no weigh
 _FEWEST = 6  # readings of a fit
 
 
-def fit_locally(times, readings, at, width, degree=2, memory=0.0):
+def fit_locally(times, readings, at, width, degree=2):
     """Fit a polynomial with Gaussian weights about each time, channel by channel.
 
     Parameters
@@ -21,14 +21,12 @@ def fit_locally(times, readings, at, width, degree=2, memory=0.0):
         Standard deviation of the kernel [s].
     degree : int
         Of the polynomial: 2, or 0 for a mean with positive weights.
-    memory : float
-        Correlation of the noise of neighbouring readings, first-order autoregressive [1].
 
     Returns
     -------
     values, variances : float64 arrays, shape (degree + 1, n_times, n_channels)
-        Value and derivatives, NaN where the readings do not show them; their variances for noise of variance 1 of the
-        same memory throughout.
+        Value and derivatives, NaN where the readings do not show them; their variances for white noise of variance
+        1.
 
     Notes
     -----
@@ -60,7 +58,7 @@ def fit_locally(times, readings, at, width, degree=2, memory=0.0):
     for channel in range(n_channels):
         pattern = read[:, channel].tobytes()
         if pattern not in shared:
-            shared[pattern] = _operators(weight * read[indices, channel], powers, u, scale, memory)
+            shared[pattern] = _operators(weight * read[indices, channel], powers, u, scale)
         rows, known, variance = shared[pattern]
         fitted = np.einsum("dtw,tw->dt", rows, filled[indices, channel])
         values[:, known, channel] = fitted[:, known]
@@ -68,19 +66,14 @@ def fit_locally(times, readings, at, width, degree=2, memory=0.0):
     return values, variances
 
 
-def _operators(weight, powers, u, scale, memory):
+def _operators(weight, powers, u, scale):
     """Weights of the readings in value and derivatives, whether a fit is known, and the variances for unit noise."""
     moments = np.einsum("tw,twi,twj->tij", weight, powers, powers, optimize=True)
     known = ((weight > 0.0).sum(axis=1) >= _FEWEST) & _surrounded(weight, u)
     moments[~known] = np.eye(powers.shape[-1])
     rows = np.einsum("tij,twj,tw->itw", np.linalg.inv(moments), powers, weight, optimize=True)
     rows *= scale[:, None, None]
-    variance = (rows**2).sum(axis=-1)
-    together = memory
-    for lag in range(1, rows.shape[-1] if memory > 0.0 else 1):
-        variance = variance + 2.0 * together * (rows[..., lag:] * rows[..., :-lag]).sum(axis=-1)
-        together *= memory
-    return rows, known, variance
+    return rows, known, (rows**2).sum(axis=-1)
 
 
 def _surrounded(weight, u):

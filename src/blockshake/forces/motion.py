@@ -6,13 +6,12 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from blockshake.forces.equations import AccelerationEquations
+from blockshake.forces.kernel_noise import Colour
 from blockshake.forces.local_fit import REACH, fit_locally
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.measurement.motion.body_frame import frames_of_bodies
 from blockshake.measurement.motion.body_poses import NOTHING, PLANAR, TRANSLATION, body_poses
 from blockshake.measurement.motion.joints import rotation_vectors
 
-_LONGEST_MEMORY = 0.95  # of the markers' noise
 WIDTH = 0.015  # s, standard deviation of the smoothing kernel
 _STEP = 0.01  # s, between instants: less than the kernel's width
 _COVERED = 2.5  # of it: an instant nearer to an end of the record is left out
@@ -37,6 +36,9 @@ class Motion:
     # float64 (n_times, n_bodies, 6, 6); inverse covariance of acceleration and angular acceleration; singular
     # where a direction is not read, zero where nothing is
     information: np.ndarray
+    # list of dict of Colour to float64 (n_times, 6, n_sources); by body: errors of its accelerations by one standard
+    # deviation of every sensor's noise [m/s2, rad/s2]
+    errors: list
     # pose_covariance, rate_covariance: float64 (n_bodies, 6, 6); of the smoothed position and small rotation
     # [m, rad], and of their rates [m/s, rad/s]
     pose_covariance: np.ndarray
@@ -81,13 +83,12 @@ def smooth_motion(test, structure, sensors):
     read_at = test["time"].to_numpy()
     time = _instants(read_at)
     poses = body_poses(test, structure, sensors.marker_noise)
-    memory = _noise_memory(test, structure)
     start = rotation_matrices(structure.orientation)
-    position, velocity, gains = _smooth_position(read_at, poses.position, time, memory)
+    position, velocity, gains = _smooth_position(read_at, poses.position, time, sensors.marker_slow)
     rotation, spin = _smooth_rotation(read_at, poses.rotation, start, time)
     equations = AccelerationEquations(len(time), len(structure.mass))
     turning = np.where(np.isfinite(rotation), rotation, start), np.where(np.isfinite(spin), spin, 0.0)
-    _add_markers(equations, test, structure, sensors, time, turning, memory)
+    _add_markers(equations, test, structure, sensors, time, turning)
     _hold_unread(equations, structure, poses.known)
     if "accelerometer" in test:
         posed = np.array([known != NOTHING for known in poses.known])
@@ -96,27 +97,8 @@ def smooth_motion(test, structure, sensors):
     acceleration, information = equations.solve()
     return Motion(
         time, position, velocity, acceleration[..., :3], rotation, spin, acceleration[..., 3:], information,
-        gains[0] * poses.covariance, gains[1] * poses.covariance, poses.known, WIDTH,
+        equations.errors(), gains[0] * poses.covariance, gains[1] * poses.covariance, poses.known, WIDTH,
     )  # fmt: skip
-
-
-def _noise_memory(test, structure):
-    """Correlation of neighbouring readings' noise, 0 to 0.95: median over the bodies with a residual, 0 without one."""
-    known = [
-        _lag_one(frame.residual.reshape(len(test["time"]), -1))
-        for _, frame in frames_of_bodies(test, structure)
-    ]
-    return float(np.clip(np.median(known), 0.0, _LONGEST_MEMORY)) if known else 0.0
-
-
-def _lag_one(residual):
-    """Correlation of a residual with the next one, over all columns; 0 of none."""
-    residual = residual - np.nanmean(residual, axis=0)
-    first, second = residual[:-1], residual[1:]
-    both = np.isfinite(first) & np.isfinite(second)
-    first, second = np.where(both, first, 0.0), np.where(both, second, 0.0)
-    size = np.sqrt((first**2).sum() * (second**2).sum())
-    return (first * second).sum() / size if size > 0.0 else 0.0
 
 
 def _instants(read_at):
@@ -126,11 +108,12 @@ def _instants(read_at):
     return chosen[(chosen >= read_at[0] + _COVERED * WIDTH) & (chosen <= read_at[-1] - _COVERED * WIDTH)]
 
 
-def _smooth_position(read_at, position, time, memory):
+def _smooth_position(read_at, position, time, slow):
     """Smoothed positions and velocities, and by how much less noise they have than one reading."""
-    values, variances = fit_locally(read_at, position.reshape(len(read_at), -1), time, WIDTH, memory=memory)
+    values, variances = fit_locally(read_at, position.reshape(len(read_at), -1), time, WIDTH)
     usual = np.where(np.isfinite(variances), variances, np.nan)
-    gains = np.nanmedian(usual.reshape(3, -1), axis=1)
+    gains = (1.0 - slow.share) * np.nanmedian(usual.reshape(3, -1), axis=1)
+    gains[:2] += slow.share * np.array([1.0, slow.memory**-2.0])
     return *values[:2].reshape(2, len(time), *position.shape[1:]), gains
 
 
@@ -149,20 +132,33 @@ def _smooth_rotation(read_at, rotation, start, time):
     return smooth @ start, rate + 0.5 * np.cross(value, rate)
 
 
-def _add_markers(equations, test, structure, sensors, time, turning, memory):
+def _add_markers(equations, test, structure, sensors, time, turning):
     """Equations of all markers: their second derivatives along the three axes."""
     read_at = test["time"].to_numpy()
     rotation, spin = turning
     displacement = test["marker_displacement"].transpose("time", "marker", "axis").to_numpy()
-    fit = fit_locally(read_at, displacement.reshape(len(read_at), -1), time, WIDTH, memory=memory)
+    fit = fit_locally(read_at, displacement.reshape(len(read_at), -1), time, WIDTH)
     second, variance = (part[2].reshape(len(time), *displacement.shape[1:]) for part in fit)
-    variance = sensors.marker_noise**2 * variance
+    noise = _noise(sensors.marker_slow, True, sensors.noise_by_axis, variance)
     axes = np.broadcast_to(np.eye(3), (len(time), 3, 3))
     for column, name in enumerate(map(str, test["marker"].values)):
         (marker,) = (marker for marker in structure.file.markers if marker.name == name)
         body, arm = _carried(structure, marker, rotation)
         towards = _centripetal(spin[:, body], arm)
-        equations.add(body, axes, arm, second[:, column] - towards, variance[:, column])
+        own = {colour: part[:, column] for colour, part in noise.items()}
+        equations.add(body, axes, arm, second[:, column] - towards, own)
+
+
+def _noise(slow, twice, size, variance):
+    """Noise of smoothed readings of the standard deviation ``size``, by `Colour`: what is white, and what is slow.
+
+    ``variance`` is that of smoothed white noise of variance 1.
+    """
+    noise = {Colour(twice, 0.0): np.sqrt((1.0 - slow.share) * variance) * size}
+    if slow.share > 0.0:
+        colour = Colour(twice, slow.memory)
+        noise[colour] = np.broadcast_to(np.sqrt(slow.share * colour.variance(WIDTH)) * size, variance.shape)
+    return noise
 
 
 def _add_accelerometers(equations, test, structure, sensors, by_markers, time, turning):
@@ -195,8 +191,8 @@ def _add_accelerometers(equations, test, structure, sensors, by_markers, time, t
             moved = by_markers[:, body, :3] + np.cross(by_markers[:, body, 3:], arm)
             away = values - (direction * moved).sum(axis=-1)
             values = values - _usual(away[np.isfinite(away)])
-            variance = sensors.accelerometer_noise**2 * variance[0]
-            equations.add(body, direction[:, None], arm, values[:, None], variance)
+            noise = _noise(sensors.accelerometer_slow, False, sensors.accelerometer_noise, variance[0])
+            equations.add(body, direction[:, None], arm, values[:, None], noise)
 
 
 def _usual(values):

@@ -15,6 +15,9 @@ class RequiredWrenches:
     wrench: np.ndarray
     # float64 (n_times, n_bodies, 6, 6); inverse covariance; singular where a direction is not read
     information: np.ndarray
+    # list of dict of Colour to float64 (n_times, 6, n_sources); by body: errors of the wrench by one standard
+    # deviation of every sensor's noise
+    errors: list
 
 
 def required_wrenches(structure, motion):
@@ -30,11 +33,16 @@ def required_wrenches(structure, motion):
     momentum = np.einsum("tbij,tbj->tbi", inertia, spin)
     moment = np.einsum("tbij,tbj->tbi", inertia, motion.angular_acceleration) + np.cross(spin, momentum)
     known = np.isfinite(inertia).all(axis=(-2, -1))
-    inverse = np.zeros((*inertia.shape[:2], 6, 6))
-    inverse[..., :3, :3] = np.eye(3) / structure.mass[:, None, None]
-    inverse[known, 3:, 3:] = np.linalg.inv(inertia[known])
+    masses, inverse = np.zeros((2, *inertia.shape[:2], 6, 6))
+    masses[..., :3, :3] = np.eye(3) * structure.mass[:, None, None]
+    masses[known, 3:, 3:] = inertia[known]
+    inverse[known] = np.linalg.inv(masses[known])
     information = np.swapaxes(inverse, -1, -2) @ motion.information @ inverse
-    return RequiredWrenches(np.concatenate([force, moment], axis=-1), information)
+    errors = [
+        {colour: masses[:, body] @ part for colour, part in parts.items()}
+        for body, parts in enumerate(motion.errors)
+    ]
+    return RequiredWrenches(np.concatenate([force, moment], axis=-1), information, errors)
 
 
 def unread_directions(information):

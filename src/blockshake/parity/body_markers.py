@@ -28,13 +28,14 @@ class BodyMarkers:
     # `in_test`, (3,) and (3, 3)
     position: np.ndarray
     rotation: np.ndarray
+    noise: np.ndarray  # float64 (3,); of a reading along the axes of the body, over the usual one [1]
     tests: tuple  # of str
     # of (time, displacement); times [s] and readings (n_times, n_markers, 3) of each test, inertial frame [m]
     readings: list
 
     @classmethod
-    def of(cls, structure, body, tests, names):
-        """Markers of a body, where ``names`` has them, in ``tests`` (readings by name)."""
+    def of(cls, structure, body, tests, names, axes=(1.0, 1.0, 1.0)):
+        """Markers of a body, where ``names`` has them, in ``tests`` (readings by name); ``axes`` as of `Sensors`."""
         starts = [standing(structure, test) for test in tests.values()]
         markers = [
             marker for marker in structure.file.markers if marker.body == body and marker.name in names
@@ -46,6 +47,7 @@ class BodyMarkers:
             np.array([marker.position for marker in markers], dtype=float).reshape(-1, 3),
             np.array([start.position[index] for start in starts]),
             rotation_matrices([start.orientation[index] for start in starts]),
+            np.sqrt(rotation_matrices(structure.orientation[index]).T ** 2 @ np.array(axes) ** 2),
             tuple(tests),
             [
                 (moved["time"].to_numpy(), moved.transpose("time", "marker", "axis").to_numpy())
@@ -62,17 +64,17 @@ class BodyMarkers:
         """`BodyFrame` of displacements of the markers, these as far off their points as ``offset`` (body frame) [m]."""
         points = self.points + offset
         readings = self.position + points @ self.rotation.T + displacement
-        return see_from_body(points, readings, self.position, self.rotation)
+        return see_from_body(points, readings, self.position, self.rotation, self.noise)
 
     def upright(self, rotation):
         """Times at which the body is known not to have turned far, bool (n_times,)."""
         return np.einsum("tij,ij->t", rotation, self.rotation) > 1.0 + 2.0 * np.cos(LARGEST_ROTATION)
 
 
-def bodies_with_markers(structure, tests):
+def bodies_with_markers(structure, tests, axes=(1.0, 1.0, 1.0)):
     """`BodyMarkers` of every body that has three markers, with all directions measured, in all tests, by its name."""
     shared = set.intersection(*(set(whole_markers(test)) for test in tests.values()))
-    bodies = {name: BodyMarkers.of(structure, name, tests, shared) for name in structure.body_names}
+    bodies = {name: BodyMarkers.of(structure, name, tests, shared, axes) for name in structure.body_names}
     return {name: body for name, body in bodies.items() if len(body.markers) >= FEWEST_MARKERS}
 
 

@@ -15,6 +15,7 @@ _SOUND_MARKERS = 2  # of a body, that must be left without a fault, or nothing s
 _MOST_FAULTS = 8  # faults on one body
 _LINEARISATIONS = 4
 _WEAK_LEVER = 0.1  # lever of the markers about an axis, over the largest: the turn about it is mostly noise
+_TURNS = 2.0  # standard deviations: of less the turn about an axis is taken to be noise as well
 _SMOOTHING = 101  # readings, half a second, over which such a turn is averaged
 _SEGMENT = 40  # readings over which coloured noise averages out, 0.2 s at 200 Hz
 # m, of the first reading's own error: as good as unknown, and no fault
@@ -73,11 +74,11 @@ def check_body(body, marker_noise, level):
     sizes, made = np.zeros(len(unknowns.spread)), {}
 
     def equations_of(named, spread):
-        equations, *made["noise"] = _linearised(body, unknowns, sizes, faults)
+        equations, *made["noise"] = _linearised(body, unknowns, sizes, faults, marker_noise)
         for _ in range(_LINEARISATIONS if named else 0):
             numbers = np.concatenate([unknowns.of(fault) for fault in named])
             sizes[numbers] += equations.posterior(spread)[0][numbers]
-            equations, *made["noise"] = _linearised(body, unknowns, sizes, faults)
+            equations, *made["noise"] = _linearised(body, unknowns, sizes, faults, marker_noise)
         return equations
 
     named, equations, spread = name_faults(
@@ -94,11 +95,11 @@ def check_body(body, marker_noise, level):
     return MarkerCheck(tuple(findings), *made["noise"])
 
 
-def _linearised(body, unknowns, sizes, faults):
+def _linearised(body, unknowns, sizes, faults, marker_noise):
     """`Equations` about faults of these sizes, and the noise and misfit of every marker [m]."""
     normal, right, kept = np.zeros((len(sizes), len(sizes))), np.zeros(len(sizes)), []
     for test in range(len(body.tests)):
-        design, residual, projector = _one_test(body, unknowns, sizes, test)
+        design, residual, projector = _one_test(body, unknowns, sizes, test, marker_noise)
         numbers, flat = unknowns.of_test(test), design.reshape(-1, design.shape[2])
         normal[np.ix_(numbers, numbers)] += flat.T @ flat
         right[numbers] += flat.T @ residual.ravel()
@@ -123,8 +124,8 @@ def _linearised(body, unknowns, sizes, faults):
     return Equations(normal, right, variance, faults), noise, misfit
 
 
-def _one_test(body, unknowns, sizes, test):
-    """Columns, residual and projector of one test, of the times at which the body stands."""
+def _one_test(body, unknowns, sizes, test, marker_noise):
+    """Columns, residual and projector of one test, over the noise by axis, of the times at which the body stands."""
     body = body.in_test(test)
     ((time, displacement),) = body.readings
     scale = (time - time[0]) / (time[-1] - time[0]) - 0.5
@@ -137,7 +138,7 @@ def _one_test(body, unknowns, sizes, test):
         & body.upright(pose.rotation)
     )
     points = body.points + places[0]
-    rotation = _steadied(points, pose.rotation[used], body.rotation)
+    rotation = _steadied(points, pose.rotation[used], body.rotation, marker_noise)
     moved = pose.position[used, None] + np.einsum("tij,mj->tmi", rotation, points)
     moved = moved - (body.position + points @ body.rotation.T)
     back = rotation.transpose(0, 2, 1)
@@ -147,23 +148,24 @@ def _one_test(body, unknowns, sizes, test):
         of_each = column.signature(seen)[:, :, :, None] * same[:, None, :, None]
         of_each = np.broadcast_to(of_each, (len(used), *of_each.shape[1:]))
         signatures.append(of_each.reshape(len(used), 3 * len(points), column.components * len(points)))
-    projector = pose.projector[used]
-    residual = np.nan_to_num(pose.residual[used]).reshape(len(used), 3 * len(points))
-    design = projector @ np.concatenate(signatures, axis=-1)
+    projector, scale = pose.projector[used], np.tile(body.noise, len(points))
+    residual = np.nan_to_num(pose.residual[used]).reshape(len(used), 3 * len(points)) / scale
+    design = projector @ (np.concatenate(signatures, axis=-1) / scale[:, None])
     return design, np.einsum("tij,tj->ti", projector, residual), projector
 
 
-def _steadied(points, rotation, start_rotation):
-    """Rotations whose turn about an axis through nearly all markers is averaged over time.
+def _steadied(points, rotation, start_rotation, marker_noise):
+    """Rotations whose turn is averaged over time about an axis through nearly all markers, or about which none is seen.
 
     Its noise would enter the signatures and make every estimate that rests on it too small.
     """
     arms = points - points.mean(axis=0)
     lever, axes = np.linalg.eigh((arms**2).sum() * np.eye(3) - arms.T @ arms)
-    weak = axes[:, lever < _WEAK_LEVER**2 * lever.max()]
-    if not weak.size or not len(rotation):
+    if not len(rotation):
         return rotation
     vectors = Rotation.from_matrix(np.einsum("ji,tjk->tik", start_rotation, rotation)).as_rotvec()
+    turns = ((vectors @ axes) ** 2).mean(axis=0) * lever > (_TURNS * marker_noise) ** 2
+    weak = axes[:, ~turns | (lever < _WEAK_LEVER**2 * lever.max())]
     about = vectors @ weak
     steady = uniform_filter1d(about, _SMOOTHING, axis=0, mode="nearest")
     return start_rotation @ Rotation.from_rotvec(vectors + (steady - about) @ weak.T).as_matrix()

@@ -139,7 +139,7 @@ def check_parity(tests, structure, sensors, level=LEVEL):
     compared with the markers as corrected.
     """
     sensors = sensors.not_noiseless()
-    noise = sensors.marker_noise
+    noise, axes = sensors.marker_noise, sensors.marker_axes
     gaps = {
         name: faulty_lines(test) + short_lines(test) + starting_lines(test) for name, test in tests.items()
     }
@@ -154,12 +154,12 @@ def check_parity(tests, structure, sensors, level=LEVEL):
     scaled = body_gains(structure, tests, sensors, share)
     tests = without(scaled)
     tests = without(marker_exchanges(structure, tests, noise, share))
-    bodies = bodies_with_markers(structure, tests)
+    bodies = bodies_with_markers(structure, tests, axes)
     checks = {name: marker_faults.check_body(body, noise, share) for name, body in bodies.items()}
     creep = frame_drift(structure, tests, noise, share)
     tests = without([finding for check in checks.values() for finding in check.findings])
     findings += creep
-    bodies = bodies_with_markers(structure, tests)
+    bodies = bodies_with_markers(structure, tests, axes)
     poses = {
         name: {key: pose for key, body in bodies.items() if (pose := measured_pose(body, index)) is not None}
         for index, name in enumerate(tests)

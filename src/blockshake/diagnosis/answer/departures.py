@@ -40,7 +40,8 @@ def departures(seen, evidence, explained):
             unit = rows.along(force_at(test.seen, int(body), np.array([1.0, 0.0, 0.0])))
             square = np.bincount(index, unit**2)
             known = square > _LEAST
-            noise = np.stack([np.bincount(index, unit * sensor) for sensor in rows.noise.T])
+            sources = np.concatenate(list(rows.noise.values()), axis=1).T
+            noise = np.stack([np.bincount(index, unit * source) for source in sources])
             for row, value in enumerate((np.bincount(index, unit * measured), np.sqrt((noise**2).sum(axis=0)),
                                            np.bincount(index, unit * forces))):  # fmt: skip
                 found[row, known, column] = value[known] / square[known]

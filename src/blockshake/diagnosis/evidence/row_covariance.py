@@ -21,15 +21,14 @@ def row_covariance(test, noise, discrepancy):
 
     Notes
     -----
-    White noise has, under the second derivative of a Gaussian kernel of the width w, the autocorrelation
-    ``(u^4 - 6 u^2 + 3) / 3 exp(-u^2 / 2)`` with ``u = (t - t') / (sqrt(2) w)``: the fourth derivative of the kernel's
-    own autocorrelation. The errors of levers and of friction are Ornstein-Uhlenbeck processes beside white ones.
+    Every sensor's noise goes from instant to instant as its `Colour` does under the kernel. The errors of levers and of friction are Ornstein-Uhlenbeck processes beside white ones.
     """
     rows = test.rows
     apart = np.abs(rows.time[:, None] - rows.time)
-    u = apart / (np.sqrt(2.0) * test.seen.motion.width)
-    shared = (u**4 - 6.0 * u**2 + 3.0) / 3.0 * np.exp(-0.5 * u**2)
-    covariance = noise**2 * (rows.noise @ rows.noise.T) * shared
+    covariance = sum(
+        (noise**2 * errors @ errors.T) * colour.correlation(apart, test.seen.motion.width)
+        for colour, errors in rows.noise.items()
+    )
     coloured, same = np.exp(-apart / _LEVER_MEMORY), apart < 1e-9
     lever = discrepancy**2 * (_LEVER**2 * coloured + _LEVER_WHITE**2 * same)
     friction = (discrepancy * _FRICTION) ** 2 * (coloured + same)

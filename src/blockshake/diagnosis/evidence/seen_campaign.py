@@ -7,6 +7,7 @@ from blockshake.forces.seen.seen_test import see_test, why_unseen
 from blockshake.measurement.campaigns.open_readings import read_open_tests, read_sealed_tests
 from blockshake.measurement.campaigns.starting_places import standing
 from blockshake.measurement.motion.body_frame import without_outliers
+from blockshake.measurement.sensors.found_noise import found_noise
 from blockshake.parity.correction import judged_readings
 from blockshake.parity.parity import Parity, campaign_parity
 
@@ -41,7 +42,11 @@ def see_sealed(campaign):
 
 
 def _seen(campaign, readings, without):
-    sensors = campaign.sensors
+    clear = {
+        name: without_outliers(test, standing(readings.structure, test))
+        for name, test in readings.tests.items()
+    }
+    sensors = found_noise(clear, readings.structure, campaign.sensors)
     parity = campaign_parity(readings, sensors, without)
     tests, unseen = [], {}
     for name, test in readings.tests.items():

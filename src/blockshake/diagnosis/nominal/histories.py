@@ -3,11 +3,11 @@
 import numpy as np
 import xarray as xr
 
-from blockshake.forces.quiet_start import counted_from_rest
 from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.motion.compared_curves import at_times
 from blockshake.measurement.motion.fall import find_fall, until_fall
 from blockshake.measurement.motion.joint_histories import joint_histories
+from blockshake.measurement.sensors.quiet_start import counted_from_rest
 
 _RATE = 50.0  # Hz, of what is kept
 _LONGEST_GAP = 0.2  # s, that is bridged by a straight line: dropouts of markers

@@ -26,8 +26,9 @@ class EquilibriumRows:
     # moment about the mass centre; zero for driven bodies
     direction: np.ndarray
     value: np.ndarray  # float64 (n_rows,); of the required wrenches along z [N, N m]
-    # float64 (n_rows, 6 * n_free); a root of the covariance by the sensors of the rows of one instant
-    noise: np.ndarray
+    # dict of Colour to float64 (n_rows, n_sources); errors of the rows by one standard deviation of every sensor's
+    # noise of this colour
+    noise: dict
 
     def along(self, wrench):
         """Component of a history of wrenches (n_times, n_bodies, 6) along every row, (n_rows,)."""
@@ -180,8 +181,12 @@ def equilibrium_rows(frames, states, motion, required, free, known=True):
     direction[:, free] = vectors.reshape(-1, len(free), 6)
     instant = chosen[row]
     value = np.einsum("rbk,rbk->r", direction[:, free], wrench[instant])
-    roots = covariance_root(information[chosen])[row]
-    noise = np.einsum("rbi,rbij->rbj", direction[:, free], roots).reshape(len(row), 6 * len(free))
+    by_colour = {}
+    for body in free:
+        for colour, errors in required.errors[body].items():
+            part = np.einsum("ri,rij->rj", direction[:, body], errors[instant])
+            by_colour.setdefault(colour, []).append(part)
+    noise = {colour: np.concatenate(parts, axis=1) for colour, parts in by_colour.items()}
     return EquilibriumRows(instant, motion.time[instant], direction, value, noise)
 
 

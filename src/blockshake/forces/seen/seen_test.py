@@ -9,7 +9,6 @@ import xarray as xr
 from blockshake.forces.faces import find_faces
 from blockshake.forces.joint_motion import JointMotion, joint_motion
 from blockshake.forces.motion import Motion, is_short, smooth_motion
-from blockshake.forces.quiet_start import counted_from_rest
 from blockshake.forces.required import RequiredWrenches, required_wrenches
 from blockshake.forces.seen.equilibrium_rows import (
     ContactForces,
@@ -23,6 +22,7 @@ from blockshake.forces.seen.equilibrium_rows import (
 )
 from blockshake.forces.seen.states import FaceStates, face_states
 from blockshake.geometry.structure import Structure
+from blockshake.measurement.sensors.quiet_start import counted_from_rest
 
 _LEAST_STILL = 0.1  # s of rest before the table moves, from whose mean the readings count
 _DRIFT, _SURE_DRIFT = 1e-3, 5.0  # m, standard deviations: between the halves of a rest

@@ -26,8 +26,8 @@ class BodyFrame:
     # float64 (n_times, n_markers, 3); where the marker is read less where the structure has it, body frame
     # [m]; free of rigid motion; NaN if not read
     residual: np.ndarray
-    # float64 (n_times, 3 n_markers, 3 n_markers); takes an error of the readings (body frame) to the
-    # residual; zero where nothing is to be checked
+    # float64 (n_times, 3 n_markers, 3 n_markers); takes an error of the readings (body frame) to the residual, both
+    # over the noise along their axes; zero where nothing is to be checked
     projector: np.ndarray
 
 
@@ -47,7 +47,7 @@ def frames_of_bodies(test, structure):
         yield columns, see_from_body(points, readings, position, start)
 
 
-def see_from_body(points, readings, start_position, start_rotation):
+def see_from_body(points, readings, start_position, start_rotation, noise=(1.0, 1.0, 1.0)):
     """`BodyFrame`: fit the rigid motion and turn what is left into the body's frame.
 
     Parameters
@@ -58,6 +58,9 @@ def see_from_body(points, readings, start_position, start_rotation):
         Positions, inertial frame [m]; a marker with a NaN is not used at that time.
     start_position, start_rotation : float64 arrays, shapes (3,), (3, 3)
         Pose near the readings' first one.
+    noise : float64 array, shape (3,)
+        Relative standard deviation of a reading along the axes of the body: of its weighted least squares alone is the
+        residual free of the error of the turn.
 
     Notes
     -----
@@ -77,8 +80,9 @@ def see_from_body(points, readings, start_position, start_rotation):
         times, markers = np.flatnonzero((read == pattern).all(axis=1)), np.flatnonzero(pattern)
         middle = points[markers].mean(axis=0)
         arms = points[markers] - middle
-        jacobian = rigid_jacobian(arms)
-        inverse = np.linalg.pinv(jacobian, rcond=ON_LINE)
+        scale = np.tile(noise, len(markers))
+        jacobian = rigid_jacobian(arms) / scale[:, None]
+        inverse = np.linalg.pinv(jacobian, rcond=ON_LINE) / scale
         x = np.tile(start_position + start_rotation @ middle, (len(times), 1))
         turn = np.tile(start_rotation, (len(times), 1, 1))
         seen = readings[np.ix_(times, markers)]

@@ -19,8 +19,15 @@ _OUTLIER = 10.0  # standard deviations of the noise
 _LEAST_NOISE = {"marker_noise": 1e-6, "accelerometer_noise": 1e-4, "transducer_noise": 1e-6}  # m, m/s2, m
 
 
+class SlowNoise(Strict):
+    """The slow part of a sort of sensors' noise."""
+
+    share: ProperFraction = Field(0.0, description="of the noise's variance [1]")
+    memory: Positive = Field(0.1, description="time in which its correlation falls to 1/e [s]")
+
+
 class Sensors(Strict):
-    """Standard deviations of the readings."""
+    """Noise of the readings: standard deviations, and how it goes on from one reading to the next."""
 
     marker_noise: NotNegative = Field(markers.NOISE, description="of a marker's reading [m]")
     accelerometer_noise: NotNegative = Field(
@@ -31,6 +38,22 @@ class Sensors(Strict):
         description="of a displacement transducer's reading [m]",
         exclude_if=lambda noise: noise == transducers.NOISE,  # sensors without it keep their digest
     )
+    marker_axes: Vector = Field(
+        (1.0, 1.0, 1.0),
+        description="noise of a marker along x, y and z over marker_noise: cameras read depth worse [1]",
+        exclude_if=lambda axes: axes == (1.0, 1.0, 1.0),
+    )
+    marker_slow: SlowNoise = Field(
+        SlowNoise(), description="of markers", exclude_if=lambda slow: not slow.share
+    )
+    accelerometer_slow: SlowNoise = Field(
+        SlowNoise(), description="of accelerometers", exclude_if=lambda slow: not slow.share
+    )
+
+    @property
+    def noise_by_axis(self):
+        """Standard deviation of a marker's reading along x, y and z, float64 (3,) [m]."""
+        return self.marker_noise * np.array(self.marker_axes)
 
     def not_noiseless(self):
         """These sensors with at least the noise of the best instruments: a stated 0 is taken as negligible noise."""
@@ -96,7 +119,7 @@ def observe(run, structure, instruments, seed):
     A marker that sits elsewhere than the structure says reads the displacement of where it sits. A clock that is
     behind by the lag shows at the time t what was at t - lag; before the start everything rests.
     """
-    noise, offsets, losses, wrong = (np.random.default_rng([seed, stream]) for stream in range(4))
+    noise, offsets, losses, wrong, slowly = (np.random.default_rng([seed, stream]) for stream in range(5))
     places = _places(run, structure, instruments)
     displacement = places - places[:1]
     names = [marker.name for marker in structure.file.markers]
@@ -107,8 +130,11 @@ def observe(run, structure, instruments, seed):
     displacement *= np.array([instruments.marker_gain.get(name, 1.0) for name in names])[:, None]
     creeps = [instruments.marker_creep.get(name, (0.0, 0.0, 0.0)) for name in names]
     displacement += (time - time[0])[:, None, None] * (np.array(instruments.marker_drift) + creeps)
-    memory = instruments.noise_memory
-    read = displacement + _noise(noise, displacement.shape, memory) * instruments.marker_noise
+
+    def noisy(times, shape, slow):
+        return _noise((noise, slowly), times, shape, instruments.noise_memory, slow)
+
+    read = displacement + noisy(time, displacement.shape, instruments.marker_slow) * instruments.noise_by_axis
     far = wrong.random(read.shape[:2]) < instruments.marker_outliers
     far[0] = False
     read[far] += wrong.normal(0.0, _OUTLIER * instruments.marker_noise, (far.sum(), 3))
@@ -136,9 +162,9 @@ def observe(run, structure, instruments, seed):
             "history": history(run.attrs.get("history"), "generate-campaign: seen through instruments"),
         },
     )  # fmt: skip
-    for name, dimension, sigma in (
-        ("accelerometer", "channel", instruments.accelerometer_noise),
-        ("transducer_displacement", "transducer", instruments.transducer_noise),
+    for name, dimension, sigma, slow in (
+        ("accelerometer", "channel", instruments.accelerometer_noise, instruments.accelerometer_slow),
+        ("transducer_displacement", "transducer", instruments.transducer_noise, SlowNoise()),
     ):
         if name not in run:
             continue
@@ -146,7 +172,7 @@ def observe(run, structure, instruments, seed):
         if name == "accelerometer":
             values = values * [instruments.channel_gain.get(channel, 1.0) for channel in sensors]
             values = values + offsets.normal(0.0, 1.0, len(sensors)) * instruments.accelerometer_offset
-        values = values + _noise(noise, values.shape, memory) * sigma
+        values = values + noisy(run["time_acc"].to_numpy(), values.shape, slow) * sigma
         if name == "transducer_displacement":
             values = values - values[:1]
         test[name] = ("time_acc", dimension), values, dict(run[name].attrs)
@@ -155,7 +181,17 @@ def observe(run, structure, instruments, seed):
     return test
 
 
-def _noise(generator, shape, memory):
+def _noise(generators, times, shape, memory, slow):
+    """Gaussian noise of unit variance along the first axis: of a memory from reading to reading, and a slow part."""
+    fast = _autoregressive(generators[0], shape, memory)
+    if slow.share == 0.0:
+        return fast
+    step = (times[-1] - times[0]) / (len(times) - 1)
+    slowly = _autoregressive(generators[1], shape, np.exp(-step / slow.memory))
+    return np.sqrt(1.0 - slow.share) * fast + np.sqrt(slow.share) * slowly
+
+
+def _autoregressive(generator, shape, memory):
     """Gaussian noise of unit variance, first-order autoregressive along the first axis."""
     white = generator.normal(0.0, 1.0, shape)
     if memory == 0.0:

@@ -1,0 +1,153 @@
+"""The sensors' noise as it is: how large, along which axis, and how much of it slow, from the rest before each test."""
+
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import solve_triangular, toeplitz
+
+from blockshake.geometry.schema import AXES
+from blockshake.measurement.motion.body_frame import rigid_jacobian
+from blockshake.measurement.sensors.instruments import SlowNoise
+from blockshake.measurement.sensors.quiet_start import counted_from_rest
+
+_SHARES = (0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9)
+_MEMORIES = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2)  # s
+_CLEAR = 3.0  # nats, by which a slow part has to explain the rest better than white noise does
+_FEWEST = 20  # readings of a rest
+_MOST_GAPS = 0.2  # of a sensor's readings in it
+_LEAST = 0.5  # of the stated noise: rounded readings may not move at all in a rest
+_STATED = 100.0  # readings that what is stated counts for
+_OFFSET = 100.0  # variance of a constant, over that of the noise
+
+
+class _Rest(NamedTuple):
+    """Readings of one sort in the rest of a test, and what a motion of the whole stack makes of them."""
+
+    step: float  # between readings [s]
+    values: np.ndarray  # float64 (n_times, n_columns)
+    group: np.ndarray  # int (n_columns,); columns of one group have one standard deviation
+    motion: np.ndarray  # float64 (n_columns, 6)
+
+
+def found_noise(tests, structure, sensors):
+    """`Sensors` with the noise that the rest before the tests shows.
+
+    Parameters
+    ----------
+    tests : dict of str to xarray.Dataset
+        By name, without outliers.
+    structure : Structure
+    sensors : Sensors
+        As stated: what is kept where no test has a rest.
+
+    Notes
+    -----
+    The stack at rest may still move with the table, as one body: at each instant rigid motions are taken out by least
+    squares. What remains is a Gaussian process of white noise and of a share of slow noise, ``exp(-|t| / memory)``;
+    share and memory are those of the largest likelihood on a grid, the means of the readings free.
+    """
+    sensors = sensors.not_noiseless()
+    at_rest = [counted_from_rest(test, structure, sensors) for test in tests.values()]
+    markers = [rest for one in at_rest if (rest := _of_markers(*one, structure))]
+    channels = [rest for one in at_rest if (rest := _of_channels(*one, structure))]
+    found = {}
+    if markers:
+        sizes, found["marker_slow"] = _noise(markers, sensors.noise_by_axis)
+        found["marker_noise"] = usual = float(np.sqrt((sizes**2).mean()))
+        found["marker_axes"] = tuple((sizes / usual).tolist())
+    if channels:
+        (size,), found["accelerometer_slow"] = _noise(channels, np.array([sensors.accelerometer_noise]))
+        found["accelerometer_noise"] = float(size)
+    return sensors.model_copy(update=found)
+
+
+def _of_markers(test, until, structure):
+    named = {marker.name: marker for marker in structure.file.markers}
+    markers = [named[name] for name in map(str, test["marker"].values)]
+    points = structure.position[structure.carriers(markers)] + structure.arms(markers)
+    moved = test["marker_displacement"].transpose("time", "marker", "axis").to_numpy()
+    motion = rigid_jacobian(points - points.mean(axis=0))
+    return _rest(
+        test["time"], until, moved.reshape(len(moved), -1), np.tile(np.arange(3), len(markers)), motion
+    )
+
+
+def _of_channels(test, until, structure):
+    if "accelerometer" not in test:
+        return None
+    sensors = [(sensor, axis) for sensor in structure.file.accelerometers for axis in sensor.axes]
+    read = [f"{sensor.name}-{axis}" in test["channel"].values for sensor, axis in sensors]
+    sensors = [one for one, there in zip(sensors, read, strict=True) if there]
+    names = [f"{sensor.name}-{axis}" for sensor, axis in sensors]
+    carried = [sensor for sensor, _ in sensors]
+    points = structure.position[structure.carriers(carried)] + structure.arms(carried)
+    axes = [AXES.index(axis) for _, axis in sensors]
+    motion = rigid_jacobian(points - points.mean(axis=0)).reshape(len(points), 3, 6)
+    motion = motion[np.arange(len(points)), axes]
+    values = test["accelerometer"].sel(channel=names).transpose("time_acc", "channel").to_numpy()
+    return _rest(test["time_acc"], until, values, np.zeros(len(names), dtype=int), motion)
+
+
+def _rest(time, until, values, group, motion):
+    """`_Rest` of the columns that are read until the table moves, short gaps bridged; None of too few readings."""
+    time = time.to_numpy()
+    quiet = time <= until
+    values = values[quiet]
+    read = np.isfinite(values)
+    kept = read.mean(axis=0) > 1.0 - _MOST_GAPS if len(values) >= _FEWEST else np.zeros(0, dtype=bool)
+    if kept.sum() <= motion.shape[1]:
+        return None
+    rows = np.arange(len(values))
+    whole = [np.interp(rows, rows[read[:, one]], values[read[:, one], one]) for one in np.flatnonzero(kept)]
+    step = float(np.median(np.diff(time[quiet])))
+    return _Rest(step, np.stack(whole, axis=1), group[kept], motion[kept])
+
+
+def _noise(rests, stated):
+    """Standard deviation of each group, (n_groups,), and `SlowNoise`, of one sort of sensors."""
+    sizes = _sizes([_without_motion(rest, np.ones(len(rest.group))) for rest in rests], rests, stated)
+    left = []
+    for rest in rests:
+        scale = sizes[rest.group]
+        rows, projector = _without_motion(rest, scale)
+        values, vectors = np.linalg.eigh(projector)
+        left.append((rest.step, rows / scale @ vectors[:, values > 0.5]))
+    white, size = _likelihood(left, 0.0, 1.0)
+    best, slow = white + _CLEAR, SlowNoise()
+    for share, memory in product(_SHARES, _MEMORIES):
+        log, factor = _likelihood(left, share, memory)
+        if log > best:
+            best, slow, size = log, SlowNoise(share=share, memory=memory), factor
+    return np.maximum(sizes * size, _LEAST * stated), slow
+
+
+def _without_motion(rest, scale):
+    """Readings without rigid motions, weighted by their standard deviations, and the projector of the scaled ones."""
+    motion = rest.motion / scale[:, None]
+    projector = np.eye(len(motion)) - motion @ np.linalg.pinv(motion)
+    return rest.values / scale @ projector * scale, projector
+
+
+def _sizes(parts, rests, stated):
+    """Standard deviation of every group from the sums of squares that motions leave, (n_groups,)."""
+    n_groups = len(stated)
+    shares, squares = _STATED * np.eye(n_groups), _STATED * stated**2
+    for (rows, projector), rest in zip(parts, rests, strict=True):
+        of = np.eye(n_groups)[rest.group]
+        shares += (len(rows) - 1) * of.T @ projector**2 @ of
+        squares += of.T @ ((rows - rows.mean(axis=0)) ** 2).sum(axis=0)
+    return np.sqrt(np.maximum(np.linalg.solve(shares, squares), (_LEAST * stated) ** 2))
+
+
+def _likelihood(left, share, memory):
+    """Logarithm of the likelihood of independent histories of noise, at their best common size, and that size."""
+    squares, count, spread = 0.0, 0, 0.0
+    for step, rows in left:
+        covariance = toeplitz(share * np.exp(-step * np.arange(len(rows)) / memory)) + _OFFSET
+        covariance[np.diag_indices(len(rows))] += 1.0 - share
+        root = np.linalg.cholesky(covariance)
+        squares += (solve_triangular(root, rows, lower=True) ** 2).sum()
+        count += rows.size
+        spread += rows.shape[1] * np.log(np.diag(root)).sum()
+    return -0.5 * count * np.log(squares / count) - spread, np.sqrt(squares / count)
