@@ -21,7 +21,8 @@ def row_covariance(test, noise, discrepancy):
 
     Notes
     -----
-    Every sensor's noise goes from instant to instant as its `Colour` does under the kernel. The errors of levers and of friction are Ornstein-Uhlenbeck processes beside white ones.
+    Every sensor's noise goes on from instant to instant as its `Colour` does under the kernel. The errors of levers and
+    of friction are Ornstein-Uhlenbeck processes beside white ones.
     """
     rows = test.rows
     apart = np.abs(rows.time[:, None] - rows.time)

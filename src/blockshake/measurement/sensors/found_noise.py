@@ -13,8 +13,8 @@ from blockshake.measurement.sensors.quiet_start import counted_from_rest
 
 _SHARES = (0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9)
 _MEMORIES = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2)  # s
-_CLEAR = 3.0  # nats, by which a slow part has to explain the rest better than white noise does
-_FEWEST = 20  # readings of a rest
+_GAINS = 3.0  # nats, by which a slow part has to explain the rest better than white noise does
+_FEWEST_AT_REST = 20  # readings of a rest
 _MOST_GAPS = 0.2  # of a sensor's readings in it
 _LEAST = 0.5  # of the stated noise: rounded readings may not move at all in a rest
 _STATED = 100.0  # readings that what is stated counts for
@@ -44,7 +44,7 @@ def found_noise(tests, structure, sensors):
     Notes
     -----
     The stack at rest may still move with the table, as one body: at each instant rigid motions are taken out by least
-    squares. What remains is a Gaussian process of white noise and of a share of slow noise, ``exp(-|t| / memory)``;
+    squares. The rest is a Gaussian process of white noise and of a share of slow noise, ``exp(-|t| / memory)``;
     share and memory are those of the largest likelihood on a grid, the means of the readings free.
     """
     sensors = sensors.not_noiseless()
@@ -95,7 +95,7 @@ def _rest(time, until, values, group, motion):
     quiet = time <= until
     values = values[quiet]
     read = np.isfinite(values)
-    kept = read.mean(axis=0) > 1.0 - _MOST_GAPS if len(values) >= _FEWEST else np.zeros(0, dtype=bool)
+    kept = read.mean(axis=0) > 1.0 - _MOST_GAPS if len(values) >= _FEWEST_AT_REST else np.zeros(0, dtype=bool)
     if kept.sum() <= motion.shape[1]:
         return None
     rows = np.arange(len(values))
@@ -114,7 +114,7 @@ def _noise(rests, stated):
         values, vectors = np.linalg.eigh(projector)
         left.append((rest.step, rows / scale @ vectors[:, values > 0.5]))
     white, size = _likelihood(left, 0.0, 1.0)
-    best, slow = white + _CLEAR, SlowNoise()
+    best, slow = white + _GAINS, SlowNoise()
     for share, memory in product(_SHARES, _MEMORIES):
         log, factor = _likelihood(left, share, memory)
         if log > best:
@@ -142,7 +142,7 @@ def _sizes(parts, rests, stated):
 
 def _likelihood(left, share, memory):
     """Logarithm of the likelihood of independent histories of noise, at their best common size, and that size."""
-    squares, count, spread = 0.0, 0, 0.0
+    squares, count, spread = np.finfo(float).tiny, 0, 0.0
     for step, rows in left:
         covariance = toeplitz(share * np.exp(-step * np.arange(len(rows)) / memory)) + _OFFSET
         covariance[np.diag_indices(len(rows))] += 1.0 - share
