@@ -11,6 +11,7 @@ from blockshake.measurement.campaigns.faulty_readings import faulty_lines
 from blockshake.measurement.campaigns.starting_places import standing, starting_lines
 from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.motion.fall import Fall
+from blockshake.measurement.sensors.instruments import Sensors
 from blockshake.parity import marker_faults, transducer_faults
 from blockshake.parity.body_markers import bodies_with_markers, measured_pose
 from blockshake.parity.channel_pairs import channel_pairs
@@ -38,6 +39,7 @@ class Parity:
     """Outcome of the parity checks."""
 
     findings: tuple  # of Finding
+    sensors: Sensors  # with the noise that they were held to, found in the rests of the tests
     # xarray.Dataset; ``noise(marker)`` of the readings after the findings are taken out and
     # ``misfit(marker)`` before [m]; NaN on bodies with fewer than three markers
     markers: xr.Dataset
@@ -59,6 +61,7 @@ class Parity:
         tables = {name: _rows(getattr(self, name)) for name in _TABLES}
         return {
             "findings": [finding.as_json() for finding in self.findings],
+            "sensors": self.sensors.model_dump(mode="json"),
             **{name: rows for name, rows in tables.items() if rows or name != "transducers"},
             "looked_at": self.looked_at,
             "falls": {name: fall._asdict() for name, fall in self.falls.items()},
@@ -79,6 +82,7 @@ class Parity:
         """Read the outcome from the values of `as_json`."""
         return cls(
             findings=tuple(map(Finding.from_json, values["findings"])),
+            sensors=Sensors(**values["sensors"]),
             **{name: _table(name, values.get(name, {})) for name in _TABLES},
             looked_at=values["looked_at"],
             falls={name: Fall(**fall) for name, fall in values["falls"].items()},
@@ -201,6 +205,7 @@ def check_parity(tests, structure, sensors, level=LEVEL):
         markers |= zip(bodies[name].markers, zip(check.noise, check.misfit, strict=True), strict=True)
     return Parity(
         findings=tuple(findings),
+        sensors=sensors,
         markers=_table("markers", markers),
         clock=_table("clock", _sizes(clock)),
         channels=_table("channels", channels | _sizes(gains)),
@@ -228,4 +233,4 @@ def _sizes(sizes):
 
 
 # of bodies that are filmed as poses, one reading each
-UNCHECKED = Parity.from_json({"findings": [], "looked_at": 0, "falls": {}, "gaps": {}})
+UNCHECKED = Parity.from_json({"findings": [], "sensors": {}, "looked_at": 0, "falls": {}, "gaps": {}})

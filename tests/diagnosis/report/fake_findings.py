@@ -200,6 +200,7 @@ def parity(structure, findings):
     told, untold = {"gain": 2e-3, "gain_error": 1e-3}, {"gain": None, "gain_error": None}
     return Parity.from_json({
         "findings": [finding.as_json() for finding in findings],
+        "sensors": {},
         "markers": markers,
         "clock": {name: {"lag": 3e-5, "lag_error": 1e-4} for name in OPEN},
         "channels": {"block-1-acc-x": told, "block-1-acc-z": untold},

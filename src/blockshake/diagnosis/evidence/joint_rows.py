@@ -12,6 +12,7 @@ from blockshake.forces.seen.wrench_histories import (
     edge_inward,
     edges_along,
     friction_against_slip,
+    heavier,
     mass_centre_off,
     normal_force,
 )
@@ -99,3 +100,8 @@ class JointRows:
     def eccentric(self):
         """Rows of a mass centre 1 m off along x, by free body."""
         return {int(body): self.rows.along(mass_centre_off(self.seen, body)) for body in self.seen.free}
+
+    @cached_property
+    def heavier(self):
+        """Rows of twice the mass, by free body."""
+        return {int(body): self.rows.along(heavier(self.seen, body)) for body in self.seen.free}

@@ -13,7 +13,7 @@ _ALL_INWARD, _INWARD, _ALONG, _ALONG_OF_TEST = 0.006, 0.003, 0.001, 0.001  # m
 _GROWTH, _GROWTH_AT = 0.0015, 0.01  # m by this rotation: edges are rounded
 _CLOSING, _CLOSING_AT = 0.006, 0.001  # m, rad: elastic faces bear wider the less they have turned
 _BARELY = 1.5  # power of one over the rotation by which a face just opened comes to bear on its edge
-_ECCENTRIC = 0.001  # m
+_ECCENTRIC, _MASS = 0.001, 0.025  # m; of each block's mass
 _PAIR, _JOINT, _RISE, _RISE_AT = 0.12, 0.05, 0.05, 0.03  # of the coefficient; m/s
 _SMALLEST_TURN, _MOST_RISE = 1e-5, 2.0
 
@@ -90,6 +90,7 @@ def _slides(test, faces, rows):
 def _of_masses(tests):
     for body in tests[0].seen.free:
         yield [_ECCENTRIC * test.eccentric[int(body)] for test in tests]
+        yield [_MASS * test.heavier[int(body)] for test in tests]
 
 
 def _zero(test):

@@ -36,11 +36,11 @@ def simulated_test(planned, draw, extension=None, accelerometers=False):
     """
     physical, numerics = part_parameters(draw.parameters)
     readings = {name: value for name, value in draw.noise.items() if name != "louder"}
-    instruments = Instruments(
-        marker_noise=draw.noise["louder"] * planned.sensors.marker_noise,
-        accelerometer_noise=draw.noise["louder"] * planned.sensors.accelerometer_noise,
-        **readings,
-    )
+    louder = {
+        name: draw.noise["louder"] * getattr(planned.sensors, name)
+        for name in ("marker_noise", "accelerometer_noise")
+    }
+    instruments = Instruments(**{**dict(planned.sensors), **louder, **readings})
     structure = planned.structure.with_parameters(physical | placed(planned.structure, draw.places))
     experiment = Experiment(structure, planned.driving.scaled(draw.amplitude), instruments)
     experiment = experiment.with_motion(0, draw.fast * faster_part(experiment.motion))

@@ -4,6 +4,7 @@ import numpy as np
 
 from blockshake.diagnosis.wording import chance_words, size_words
 from blockshake.effects.registry import title_of
+from blockshake.measurement.sensors.found_noise import noise_words
 from blockshake.pages.blocks import Section, Table, Text
 from blockshake.pages.wording import number
 from blockshake.parity.kinds.registry import KINDS
@@ -23,8 +24,7 @@ def _sensors(parity):
         f"{parity.markers.sizes['marker']} markers, {parity.channels.sizes['channel']} accelerometer channels, "
         f"the clocks of {parity.clock.sizes['test']} tests; chance of any false finding {LEVEL:g}. "
     )
-    if noise.notnull().any():
-        text += f"Noise of the markers {number(1e3 * noise.min(), 2)} to {number(1e3 * noise.max(), 2)} mm. "
+    text += f"At rest the {noise_words(parity.sensors)}. "
     if unchecked:
         text += f"Not checked against others, fewer than three on their body: {', '.join(unchecked)}. "
     lags = np.abs(parity.clock["lag"])

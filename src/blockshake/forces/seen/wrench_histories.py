@@ -86,6 +86,13 @@ def mass_centre_off(seen, body, axis=0):
     return np.nan_to_num(wrench)
 
 
+def heavier(seen, body):
+    """Effect on the balance of a body of twice the mass, its mass centre where it is."""
+    wrench = _none(seen)
+    wrench[:, body] = -seen.required.wrench[:, body]
+    return np.nan_to_num(wrench)
+
+
 def force_at(seen, body, force, height=0.0, arm=None):
     """A force on a body.
 

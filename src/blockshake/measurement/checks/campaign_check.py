@@ -28,6 +28,7 @@ from blockshake.measurement.checks.quiet_noise import (
 from blockshake.measurement.motion.fall import find_fall
 from blockshake.measurement.poses.posed_check import posed_lines
 from blockshake.measurement.sensors.accelerometers import shaken_channels
+from blockshake.measurement.sensors.found_noise import found_noise, noise_remarks
 from blockshake.measurement.sensors.markers import (
     directions_read,
     marker_bodies,
@@ -67,8 +68,9 @@ def campaign_lines(folder):
     if structure.file.displacement_transducers:
         lines[0] += f", of displacement transducers {campaign.sensors.transducer_noise:g} m"
     remarks, read, named, first = [f"  {remark}" for remark in point_remarks(structure)], {}, set(), {}
+    tests = {}
     for entry in campaign.tests.values():
-        test = load_test(campaign, entry.name)
+        test = tests[entry.name] = load_test(campaign, entry.name)
         kinds = [kind for kind in ("marker", "channel", "transducer") if kind in test.coords]
         read[entry.name] = [str(name) for kind in kinds for name in test[kind].values]
         named |= {(entry.name, fault.sensor) for fault in test.attrs["faulty"]}
@@ -82,6 +84,9 @@ def campaign_lines(folder):
             remarks.append(
                 f"  {entry.name}: {fall.body} falls at {fall.time:.2f} s; a diagnosis reads the test until then"
             )
+    if tests:
+        found = found_noise(tests, structure, campaign.sensors)
+        remarks += [f"  {remark}" for remark in noise_remarks(found, campaign.sensors)]
     seen = dict.fromkeys(name for names in read.values() for name in names)
     for test, names in read.items():
         lost = [name for name in seen if name not in names and (test, name) not in named]

@@ -18,6 +18,10 @@ _FEWEST_AT_REST = 20  # readings of a rest
 _MOST_GAPS = 0.2  # of a sensor's readings in it
 _LEAST = 0.5  # of the stated noise: rounded readings may not move at all in a rest
 _STATED = 100.0  # readings that what is stated counts for
+_FAR_SHARE, _FAR_AXIS = (
+    0.1,
+    1.15,
+)  # from which a slow part, or the noise along an axis, is far from the stated one
 _OFFSET = 100.0  # variance of a constant, over that of the noise
 
 
@@ -60,6 +64,36 @@ def found_noise(tests, structure, sensors):
         (size,), found["accelerometer_slow"] = _noise(channels, np.array([sensors.accelerometer_noise]))
         found["accelerometer_noise"] = float(size)
     return sensors.model_copy(update=found)
+
+
+def noise_words(sensors):
+    """Sentence on the noise of `Sensors`: its size by axis, and its slow part."""
+    sizes = [f"{1e3 * size:.2g}" for size in sensors.noise_by_axis]
+    of_markers = f"{sizes[0]} mm" if len(set(sizes)) == 1 else f"{', '.join(sizes)} mm along x, y, z"
+    parts = (
+        ("markers", of_markers, sensors.marker_slow),
+        ("accelerometers", f"{sensors.accelerometer_noise:.2g} m/s2", sensors.accelerometer_slow),
+    )
+    words = [f"{what} {size}{_slow_words(slow)}" for what, size, slow in parts]
+    return f"noise of {' and of '.join(words)}"
+
+
+def _slow_words(slow):
+    return f", {slow.share:.0%} of its variance slow ({slow.memory:g} s)" if slow.share else ""
+
+
+def noise_remarks(found, stated):
+    """Remarks on noise whose slow part, or whose share along an axis, is far from what is stated."""
+    far = max(
+        abs(np.log(found.noise_by_axis / found.marker_noise * stated.marker_noise / stated.noise_by_axis))
+    )
+    slow = [
+        abs(getattr(found, part).share - getattr(stated, part).share) >= _FAR_SHARE
+        for part in ("marker_slow", "accelerometer_slow")
+    ]
+    if far < np.log(_FAR_AXIS) and not any(slow):
+        return []
+    return [f"{noise_words(found)} found at rest, stated {noise_words(stated).removeprefix('noise of ')}"]
 
 
 def _of_markers(test, until, structure):
