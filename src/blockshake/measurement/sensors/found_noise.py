@@ -18,10 +18,8 @@ _FEWEST_AT_REST = 20  # readings of a rest
 _MOST_GAPS = 0.2  # of a sensor's readings in it
 _LEAST = 0.5  # of the stated noise: rounded readings may not move at all in a rest
 _STATED = 100.0  # readings that what is stated counts for
-_FAR_SHARE, _FAR_AXIS = (
-    0.1,
-    1.15,
-)  # from which a slow part, or the noise along an axis, is far from the stated one
+_FAR_SHARE = 0.1  # of the variance: a slow part that is farther from the stated one is remarked
+_UNEVEN = 1.1  # between the noise along two axes, within which one figure says both
 _OFFSET = 100.0  # variance of a constant, over that of the noise
 
 
@@ -67,19 +65,20 @@ def found_noise(tests, structure, sensors):
 
 
 def noise_words(sensors):
-    """Sentence on the noise of `Sensors`: its size by axis, and its slow part."""
-    sizes = [f"{1e3 * size:.2g}" for size in sensors.noise_by_axis]
-    of_markers = f"{sizes[0]} mm" if len(set(sizes)) == 1 else f"{', '.join(sizes)} mm along x, y, z"
+    """Words on the noise of `Sensors`: its size, by axis where it is uneven, and its slow part."""
+    of_markers = f"{1e3 * sensors.marker_noise:.2g} mm"
+    if np.ptp(np.log(sensors.marker_axes)) > np.log(_UNEVEN):
+        of_markers = f"{', '.join(f'{1e3 * size:.2g}' for size in sensors.noise_by_axis)} mm along x, y, z"
     parts = (
         ("markers", of_markers, sensors.marker_slow),
         ("accelerometers", f"{sensors.accelerometer_noise:.2g} m/s2", sensors.accelerometer_slow),
     )
     words = [f"{what} {size}{_slow_words(slow)}" for what, size, slow in parts]
-    return f"noise of {' and of '.join(words)}"
+    return f"noise of {'; of '.join(words)}"
 
 
 def _slow_words(slow):
-    return f", {slow.share:.0%} of its variance slow ({slow.memory:g} s)" if slow.share else ""
+    return f", {100.0 * slow.share:.0f} % of its variance slow ({slow.memory:g} s)" if slow.share else ""
 
 
 def noise_remarks(found, stated):
@@ -91,9 +90,9 @@ def noise_remarks(found, stated):
         abs(getattr(found, part).share - getattr(stated, part).share) >= _FAR_SHARE
         for part in ("marker_slow", "accelerometer_slow")
     ]
-    if far < np.log(_FAR_AXIS) and not any(slow):
+    if far < np.log(_UNEVEN) and not any(slow):
         return []
-    return [f"{noise_words(found)} found at rest, stated {noise_words(stated).removeprefix('noise of ')}"]
+    return [f"at rest the {noise_words(found)}; stated is a {noise_words(stated)}"]
 
 
 def _of_markers(test, until, structure):
