@@ -7,7 +7,7 @@ import numpy as np
 
 from blockshake.effects.effect import Columns, Effect, EffectParameter
 from blockshake.effects.places import blocks
-from blockshake.forces.seen.wrench_histories import force_at
+from blockshake.forces.seen.wrench_histories import heavier
 
 _SCALE = 0.2  # of the block's mass
 HEIGHTS = (0.0, 0.42)  # of what is added or lacks, above the mass centre, over the block's height
@@ -34,13 +34,10 @@ def _act(experiment, values, place):
 
 def _columns(seen, place):
     """``-(a - g)`` of the point, times the block's mass."""
-    motion, body = seen.motion, seen.structure.body_names.index(place["body"])
+    body = seen.structure.body_names.index(place["body"])
     solid = seen.structure.solids[seen.structure.file.bodies[body].shape]
-    arm = place["height"] * float(np.ptp(solid.vertices[:, 2])) * motion.rotation[:, body, :, 2]
-    spin = motion.angular_velocity[:, body]
-    further = np.cross(motion.angular_acceleration[:, body], arm) + np.cross(spin, np.cross(spin, arm))
-    force = np.array(seen.structure.file.gravity) - motion.acceleration[:, body] - further
-    rows = seen.rows.along(force_at(seen, body, seen.structure.mass[body] * force, arm=arm))
+    above = place["height"] * float(np.ptp(solid.vertices[:, 2]))
+    rows = seen.rows.along(heavier(seen, body, above))
     return [Columns({}, rows[:, None], (_SCALE,), True)]
 
 

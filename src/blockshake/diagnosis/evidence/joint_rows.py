@@ -103,5 +103,5 @@ class JointRows:
 
     @cached_property
     def heavier(self):
-        """Rows of twice the mass, by free body."""
+        """Rows of twice the mass at the mass centre, by free body."""
         return {int(body): self.rows.along(heavier(self.seen, body)) for body in self.seen.free}

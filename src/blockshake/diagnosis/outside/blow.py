@@ -12,6 +12,13 @@ _WIDTHS = (0.04, 0.08, 0.16, 0.4)  # s
 _APART = 0.02  # s, between the times tried of blows as short; of longer ones as long as they are
 _SCALE = 0.5  # of the block's weight
 _CLEAR = 3.0  # nats, from which a test counts as struck
+_EVENT, _RAISED = (
+    0.15,
+    (3.0, 10.0, 30.0, 100.0, 300.0, 1000.0),
+)  # s to either side; variance over the usual one
+# of what an event without a form gains there, that a blow must: of 148 blows of 8 to 2,000 nats, put into the rows of
+# four clean campaigns, none gained less than 84 %, and of 77 such events 12 let a blow gain 70 %
+_OF_EVENT = 0.7
 
 
 class _Struck(NamedTuple):
@@ -27,16 +34,20 @@ class _Struck(NamedTuple):
 
 
 def explain_blow(likelihood, points, weight):
-    """`Explanation` of at most one blow a test at one point, of any size and sign in each."""
+    """`Explanation` of at most one blow a test at one point, of any size and sign in each.
+
+    Where joints change, errors have heavy tails: a blow that explains too little of what happened is such an event.
+    """
     scale, total, struck = _SCALE * weight, 0.0, []
     for test, point in enumerate(points.by_test):
         shapes, tried = _pulses(point)
         gain, mean, deviation = likelihood.single(likelihood.whiten_one(test, shapes), scale, test=test)
-        evidence = mean_evidence(gain)
+        evidence, best = mean_evidence(gain), int(np.argmax(gain))
+        time, width = tried[best]
+        if evidence > _CLEAR and evidence < _OF_EVENT * _gain_of_event(likelihood, test, point.time, time):
+            evidence = -np.inf
         total += np.logaddexp(0.0, evidence) - np.log(2.0)  # struck or not, alike likely
         if evidence > _CLEAR:
-            best = int(np.argmax(gain))
-            time, width = tried[best]
             area = np.sqrt(2.0 * np.pi) * np.hypot(0.5 * width, WIDTH)  # of a pulse of 1 N, N s
             rows, impulse, error = shapes[:, best] / area, mean[best] * area, deviation[best] * area
             struck.append(_Struck(evidence, test, rows, impulse, error, time, width))
@@ -54,6 +65,17 @@ def explain_blow(likelihood, points, weight):
     scales = np.maximum(np.abs(impulses), 1.0)  # of what stands beside another cause: free
     fit = Fit({"blows": blows}, float(total), columns, scales, impulses, covariance)
     return Explanation("blow", points.place, float(total), (fit,))
+
+
+def _gain_of_event(likelihood, test, times, at):
+    """Gain of errors that are larger around a time of one test, the factor averaged."""
+    root, near = likelihood.roots[test], np.flatnonzero(np.abs(times - at) <= _EVENT)
+    errors = np.zeros((len(times), len(near)))
+    errors[near] = np.linalg.cholesky(root[near] @ root[near].T)
+    whitened = np.zeros((len(likelihood.value), len(near)))
+    whitened[slice(*likelihood.ends[test : test + 2])] = likelihood.whiten_one(test, errors)
+    scales = np.sqrt(np.array(_RAISED) - 1.0)[:, None] * np.ones(len(near))
+    return mean_evidence([likelihood.amplitudes(whitened, scale).gain for scale in scales])
 
 
 def _pulses(point):

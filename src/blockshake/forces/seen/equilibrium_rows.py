@@ -190,6 +190,25 @@ def equilibrium_rows(frames, states, motion, required, free, known=True):
     return EquilibriumRows(instant, motion.time[instant], direction, value, noise)
 
 
+def balanced_wrenches(rows, required, free):
+    """Required wrenches less the errors of the sensors that rows show, at the instants of rows, (n_times, n_bodies, 6).
+
+    The least change, by the covariance of the sensors, with which the rows are zero. Elsewhere NaN.
+    """
+    balanced = np.full_like(required.wrench, np.nan)
+    for instant in np.unique(rows.instant):
+        here = rows.instant == instant
+        errors = [
+            np.concatenate([part[instant] for part in required.errors[body].values()], axis=1)
+            for body in free
+        ]
+        along = [rows.direction[here, body] @ error for body, error in zip(free, errors, strict=True)]
+        shares = np.linalg.solve(sum(one @ one.T for one in along), rows.value[here])
+        for body, error, one in zip(free, errors, along, strict=True):
+            balanced[instant, body] = required.wrench[instant, body] - error @ (one.T @ shares)
+    return balanced
+
+
 def _all_carried(frames, states):
     """Wrenches that each face may carry, a list of (n_times, n_bodies, 6, 6)."""
     bearing = bearing_points(frames, states)

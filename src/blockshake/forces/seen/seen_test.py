@@ -14,6 +14,7 @@ from blockshake.forces.seen.equilibrium_rows import (
     ContactForces,
     EquilibriumRows,
     FaceFrames,
+    balanced_wrenches,
     bearing_points,
     contact_forces,
     equilibrium_rows,
@@ -65,6 +66,11 @@ class SeenTest:
     def tree(self):
         """Whether the faces are a tree: the force of each is known."""
         return len(self.faces) == len(self.free)
+
+    @cached_property
+    def balanced(self):
+        """`balanced_wrenches` of the test."""
+        return balanced_wrenches(self.rows, self.required, self.free)
 
     @cached_property
     def bearing(self):

@@ -86,11 +86,22 @@ def mass_centre_off(seen, body, axis=0):
     return np.nan_to_num(wrench)
 
 
-def heavier(seen, body):
-    """Effect on the balance of a body of twice the mass, its mass centre where it is."""
-    wrench = _none(seen)
-    wrench[:, body] = -seen.required.wrench[:, body]
-    return np.nan_to_num(wrench)
+def heavier(seen, body, height=0.0):
+    """Effect on the balance of a body of twice the mass, what is added at a height above its mass centre [m].
+
+    By `SeenTest.balanced`: the noise of the rows is not in it, nor then the readings themselves where all bodies, or
+    those that turn as one, are heavier alike.
+    """
+    motion, wrench, mass = seen.motion, seen.balanced[:, body], seen.structure.mass[body]
+    arm, spin = height * motion.rotation[:, body, :, 2], motion.angular_velocity[:, body]
+    turn = motion.rotation[:, body]
+    inertia = turn @ seen.structure.inertia[body] @ np.swapaxes(turn, -1, -2)
+    moment = wrench[:, 3:] - np.cross(spin, np.einsum("tij,tj->ti", inertia, spin))
+    turning = np.einsum(
+        "tij,tj->ti", np.linalg.inv(np.where(np.isfinite(inertia), inertia, np.eye(3))), moment
+    )
+    further = np.cross(turning, arm) + np.cross(spin, np.cross(spin, arm))
+    return force_at(seen, body, -wrench[:, :3] - mass * further, arm=arm)
 
 
 def force_at(seen, body, force, height=0.0, arm=None):
