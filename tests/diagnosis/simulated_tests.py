@@ -10,6 +10,7 @@ from blockshake.forces.seen.seen_test import see_test
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Sensors
 from blockshake.measurement.motion.body_frame import without_outliers
+from blockshake.measurement.sensors.found_noise import found_noise
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.simulation.simulate import simulate
 
@@ -23,17 +24,18 @@ def cause_of(name, place, values, when=None):
     return made_up_cause(name, place, members=(values,), when=when or {})
 
 
-def seen_tests(structure, motions, cause=None, change=None, duration=DURATION, model=RIGID):
+def seen_tests(structure, motions, cause=None, change=None, duration=DURATION, model=RIGID, noise=None):
     """`SeenTest` of every motion, by name with its scale, as the sensors of the structure read it.
 
     ``change`` of an experiment and the name of its test: what happens there, and the structure does not know.
-    ``model`` has the solver, its parameters and the time step [s].
+    ``model`` has the solver, its parameters and the time step [s]. With ``noise``, `Instruments`, the noise is found
+    as a campaign's is; without it is as stated.
     """
     path = STRUCTURES / f"{structure}.yaml"
-    file, tests = load_structure(path if path.is_file() else structure), []
+    file, tests = load_structure(path if path.is_file() else structure), {}
     solver, parameters, time_step = model
     for seed, (name, (motion, scale)) in enumerate(motions.items()):
-        experiment = Experiment(file, load_motion(motion, scale), Instruments())
+        experiment = Experiment(file, load_motion(motion, scale), noise or Instruments())
         if change:
             experiment = change(experiment, name)
         if cause:
@@ -44,6 +46,6 @@ def seen_tests(structure, motions, cause=None, change=None, duration=DURATION, m
         )  # fmt: skip
         readings = observe(run, experiment.structure, experiment.instruments, seed)
         known = [marker.name for marker in file.file.markers]
-        readings = without_outliers(readings.sel(marker=known), file)
-        tests.append(see_test(name, readings, file, Sensors()))
-    return tests
+        tests[name] = without_outliers(readings.sel(marker=known), file)
+    sensors = found_noise(tests, file, Sensors()) if noise else Sensors()
+    return [see_test(name, readings, file, sensors) for name, readings in tests.items()]

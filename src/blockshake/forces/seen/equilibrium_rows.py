@@ -13,6 +13,7 @@ _EVERY = 0.02  # s, between instants: the kernel passes next to nothing beyond 2
 _CARRIED = 1e-3
 _RESOLVED = 1.0 - 1e-6  # share of a contact force that the wrenches tell
 _BEYOND, _SURELY = 0.01, 4.0  # m, standard deviations: of the resultant beyond the edge of a closed face
+_BY_NOISE = 3.0  # standard deviations that noise may have in rows
 _TURNS = 3.0  # standard deviations, by which such a face turns to that side: a force from outside moves a resultant too
 
 
@@ -193,7 +194,8 @@ def equilibrium_rows(frames, states, motion, required, free, known=True):
 def balanced_wrenches(rows, required, free):
     """Required wrenches less the errors of the sensors that rows show, at the instants of rows, (n_times, n_bodies, 6).
 
-    The least change, by the covariance of the sensors, with which the rows are zero. Elsewhere NaN.
+    The least change, by the covariance of the sensors, with which the rows are zero, as far as noise can be: the rest
+    of an event is none. Elsewhere NaN.
     """
     balanced = np.full_like(required.wrench, np.nan)
     for instant in np.unique(rows.instant):
@@ -203,7 +205,9 @@ def balanced_wrenches(rows, required, free):
             for body in free
         ]
         along = [rows.direction[here, body] @ error for body, error in zip(free, errors, strict=True)]
-        shares = np.linalg.solve(sum(one @ one.T for one in along), rows.value[here])
+        value = rows.value[here]
+        shares = np.linalg.solve(sum(one @ one.T for one in along), value)
+        shares *= min(1.0, _BY_NOISE / np.sqrt(max(value @ shares / len(value), np.finfo(float).tiny)))
         for body, error, one in zip(free, errors, along, strict=True):
             balanced[instant, body] = required.wrench[instant, body] - error @ (one.T @ shares)
     return balanced
