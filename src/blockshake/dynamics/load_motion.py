@@ -18,6 +18,7 @@ from blockshake.dynamics.records.dyna import is_dyna, read_dyna
 from blockshake.dynamics.records.knet import is_knet, read_knet
 from blockshake.dynamics.records.record import chosen_records, one_motion
 from blockshake.dynamics.records.smc import is_smc, read_smc
+from blockshake.dynamics.records.times import gap_words
 from blockshake.dynamics.synthetic_motion import load_synthetic, synthesise
 from blockshake.errors import Argument, InputError
 from blockshake.files import AnyPath, named_file, read_foreign_text
@@ -160,6 +161,8 @@ def _motion_of_rows(rows, source, form):
     time, columns, kind = rows
     attributes = {"source": source, "format": form, "synthetic": False}
     attributes |= {"checked": "times", "assumed": "nothing"}
+    if words := gap_words(time):
+        attributes["gaps"] = words
     if time[0] != 0.0:
         attributes["first_time"] = float(time[0])
     return ground_motion(Path(source).stem, time - time[0], columns, kind, attributes)

@@ -163,7 +163,7 @@ def motion_line(motion):
 
 def motion_remarks(motion):
     """One sentence for everything about a `GroundMotion` that looks like a slip of the pen; a list of str."""
-    remarks = []
+    remarks = [motion.attributes["gaps"]] if "gaps" in motion.attributes else []
     ends = [end for axis in "xyz" for end in acceleration_segments(motion, axis)[1:]]
     peak = float(max(np.abs(end).max() for end in ends))
     shift = motion.evaluate(motion.table.breaks) - motion.evaluate(motion.table.breaks[:1])

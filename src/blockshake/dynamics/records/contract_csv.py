@@ -91,7 +91,7 @@ def _checked_rows(columns, lines, where, row):
         if coded is not None:
             expected = f"expected a value; {column[coded]:g} looks like a code for none"
             raise InputError(where, f"{row} {lines[coded]}, {name}", expected)
-    check_times(time, lines, where, "time_s", row)
+    check_times(time, list(columns.values()), lines, where, "time_s", row)
     return time, {name if name == "pitch_y" else name[-1]: column for name, column in columns.items()}
 
 

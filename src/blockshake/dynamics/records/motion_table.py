@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.dynamics.baseline import settle
 from blockshake.dynamics.motion import CHANNELS, check_finite, ground_motion
-from blockshake.dynamics.records.times import check_times
+from blockshake.dynamics.records.times import check_times, gap_words
 from blockshake.errors import Argument, InputError
 from blockshake.tables.table_file import read_table
 from blockshake.tables.units import kind_of_unit, unit_size
@@ -65,7 +65,7 @@ def load_motion_table(source, layout, time, columns, unit, time_unit, baseline, 
     if step is None:
         times = table.times(time, unit_size("time", time_unit, Argument("time_unit"), time_unit))
         at = _finite(table, time, times)
-        check_times(at, table.lines, where, time)
+        check_times(at, list(read.values()), table.lines, where, time)
     else:
         at = step * np.arange(len(next(iter(read.values()))))
         assumed.append(f"a step of {step:g} s, as given")
@@ -73,6 +73,8 @@ def load_motion_table(source, layout, time, columns, unit, time_unit, baseline, 
         raise InputError(where, "", f"expected at least two rows, found {len(at)}")
     attributes = {"source": Path(source).name, "format": "table", "synthetic": False}
     attributes |= {"checked": "times" if step is None else "nothing", "assumed": "; ".join(assumed)}
+    if words := gap_words(at):
+        attributes["gaps"] = words
     if at[0] != 0.0:
         attributes["first_time"] = float(at[0])
     with np.errstate(over="ignore", invalid="ignore"):  # looked at below

@@ -10,6 +10,7 @@ _EVEN_SHARE, _WIDE_SHARE = 0.9, 0.25  # of the steps: even ones of all that are 
 _FAR = 5.0  # steps longer than nearly all others, beyond which rows are missing of an uneven series too
 _NEARLY_ALL = 0.95
 _MOST_DECIMALS = 9  # of printed times
+_FEWEST_CROSSINGS = 4  # of a mean, so that a gap is at most an eighth of the motion
 _FEWEST_ROWS = 20  # below it a table may be sparse on purpose
 
 
@@ -26,19 +27,48 @@ def check_increase(time, lines, where, name, row="line"):
         raise InputError(where, f"{row} {lines[back[0] + 1]}, {name}", wrong)
 
 
-def check_times(time, lines, where, name, row="line"):
-    """Refuse times as `check_increase`, and gaps in a series that is even otherwise, which no line may bridge."""
+def check_times(time, columns, lines, where, name, row="line"):
+    """Refuse times as `check_increase`, and a gap that is longer than a quarter of the mean period of a column.
+
+    ``columns``: arrays (n_rows,) of the motion; their mean period is that of the crossings of their means. A shorter
+    gap is bridged, and `gap_words` tells it.
+    """
     check_increase(time, lines, where, name, row)
-    steps = np.diff(time)
-    usual = float(np.median(steps)) if len(steps) else 0.0
-    wide = _gaps(time, steps, usual) if len(time) >= _FEWEST_ROWS else np.zeros(0, dtype=bool)
-    if wide.any():
-        index = int(np.argmax(wide))
+    steps, wide = np.diff(time), _wide(time)
+    if not wide.any():
+        return
+    crossings = (np.count_nonzero(np.diff(np.signbit(column - np.mean(column)))) for column in columns)
+    quarter = (time[-1] - time[0]) / (2.0 * max(_FEWEST_CROSSINGS, *crossings, 0))
+    if steps[wide].max() > quarter:
+        index = int(np.argmax(wide & (steps > quarter)))
         raise InputError(
             where, f"{row} {lines[index + 1]}, {name}",
-            f"expected rows {usual:.4g} s apart as elsewhere; {steps[index]:.4g} s after {time[index]:.13g} s have "
-            f"none, {int(wide.sum())} such gaps in all: write the rows that are missing, or split the motion",
+            f"expected rows {np.median(steps):.4g} s apart as elsewhere; {steps[index]:.4g} s after "
+            f"{time[index]:.13g} s have none, {int(wide.sum())} such gaps in all, and a quarter of the mean period is "
+            f"{quarter:.2g} s: write the rows that are missing, or split the motion",
         )  # fmt: skip
+
+
+def gap_words(time):
+    """Words on the rows that a series lacks, empty where it lacks none."""
+    wide = _wide(time)
+    if not wide.any():
+        return ""
+    steps, index = np.diff(time), int(np.argmax(wide))
+    return (
+        f"rows are missing: {steps[index]:.4g} s after {time[index]:.13g} s have none, where others are "
+        f"{np.median(steps):.4g} s apart; {int(wide.sum())} such gaps in all, bridged by lines"
+    )
+
+
+def _wide(time):
+    """Whether each step is a gap (n_rows - 1,); a sparse table has none."""
+    steps = np.diff(time)
+    return (
+        _gaps(time, steps, float(np.median(steps)))
+        if len(time) >= _FEWEST_ROWS
+        else np.zeros(len(steps), dtype=bool)
+    )
 
 
 def _gaps(time, steps, usual):
