@@ -20,7 +20,7 @@ from blockshake.geometry.schema import StructureFile
 from blockshake.measurement.campaigns.campaign import CampaignFile
 from blockshake.own_files.check import check
 from blockshake.own_files.import_map import ImportMap
-from blockshake.study.config import StudyConfig, load_config
+from blockshake.study.config import StudyConfig, Until, load_config
 from blockshake.study.limit_states.settings import LimitState
 from blockshake.study.sampling.latin_hypercube import draw_design
 from blockshake.virtual.settings import VirtualCampaign, load_settings
@@ -39,6 +39,8 @@ ELSEWHERE = (
     "ensemble.distributions.*.probabilities",
     "ensemble.distributions.*.loc",
     "ensemble.distributions.*.scale",
+    "ensemble.batch",
+    *(f"ensemble.until.{key}" for key in Until.model_fields),
     *(f"limits.*.{key}" for key in LimitState.model_fields),
     "limits.*.joint.*",
     "limits.*.cases.*",

@@ -29,6 +29,7 @@ from blockshake.simulation.models import MODELS as SOLVERS, solver_of
 from blockshake.sources import kernel_sources, script_sources, source_digest
 from blockshake.study.analyses import ANALYSES
 from blockshake.study.config import StudyConfig, check_config
+from blockshake.study.growth import reached
 from blockshake.validation import validated
 from blockshake.working_folder import (
     end_with_command,
@@ -142,7 +143,7 @@ if workflow.remote_exec:
 
 
 config.update(configuration())
-CHECKED = study_config()
+CHECKED = reached(study_config(), "results")
 config.update(CHECKED.model_dump(mode="json"))
 
 TEMPLATES = sorted(

@@ -14,6 +14,7 @@ from blockshake.files import check_output, load_yaml, write_text
 from blockshake.own_files.run_workflow import WorkflowError, cores_of, run_workflow, workflow_command
 from blockshake.pages.wording import model_label
 from blockshake.study.config import load_config
+from blockshake.study.growth import grow, reached
 from blockshake.working_folder import hold
 
 _SAMPLE = re.compile(r"^(\S+) (\S+) sample (\d+), (?:kept|simulated): .*?(?:; took ([\d.e+]+) s)?$")
@@ -68,15 +69,21 @@ def run_study(file, output=None, cores=None, case=None, say=print):
         moved = yaml.safe_dump(_seen_from(folder, load_yaml(file)), sort_keys=False, allow_unicode=True)
         write_text(path, moved)
     report = folder / "reports" / "-".join(filter(None, (config.name, case)))
-    heard = _Progress(config, cores, case, folder, say)
+    target, results = f"reports/{report.name}.html" if case else "all", folder / "results"
+    heard = _Progress(reached(config, results), cores, case, folder, say)
     say(f"{config.name}: {heard.total} runs of {', '.join(config.models)}, on {cores} cores, in {folder}")
     if kept := heard.total - heard.runs_left():
         say(f"{kept} of them are there from before, and run again only where their input changed")
     if not any((folder / "results" / "kernels").glob("*")):
         say("models that are new to this machine are compiled first: half a minute to one minute each")
-    target = [f"reports/{report.name}.html"] if case else ["all"]
+    grown = config.ensemble.until is None
     try:
-        run_workflow(workflow_command(cores, folder, path, *target), heard)
+        while not grown:
+            run_workflow(workflow_command(cores, folder, path, f"results/{config.name}/responses.csv"), heard)
+            words, grown = grow(config, results)
+            say(f"{config.name}: {words}")
+            heard = _Progress(reached(config, results), cores, case, folder, say)
+        run_workflow(workflow_command(cores, folder, path, target), heard)
     except WorkflowError as stopped:
         if stopped.exit_code == INTERRUPTED:
             say(

@@ -1,5 +1,6 @@
 """The configuration of a study: every key, its type and its limits, checked before the first job."""
 
+import re
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -42,6 +43,40 @@ def _as_text(given):
     return str(given) if isinstance(given, int) and not isinstance(given, bool) else given
 
 
+def _share(given):
+    """A share of a text such as ``2 %``."""
+    if isinstance(given, str) and (found := re.fullmatch(r"\s*([\d.]+)\s*%\s*", given)):
+        return float(found[1]) / 100.0
+    return given
+
+
+Accuracy = Annotated[Positive | None, BeforeValidator(_share)]
+
+
+class Until(Strict):
+    """Half the width of 95 % limits, of all cases and models, from which on a study does not grow."""
+
+    collapse_probability: Accuracy = Field(None, description="of the probability of a collapse [1]")
+    limit_states: Accuracy = Field(None, description="of the probability of every limit state [1]")
+    median_drift: Accuracy = Field(
+        None, description="of the median of each case's largest displacement, over that median [1]"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_words(cls, given):
+        """A key of two words is written with a blank too."""
+        if isinstance(given, dict):
+            return {key.replace(" ", "_") if isinstance(key, str) else key: one for key, one in given.items()}
+        return given
+
+    @model_validator(mode="after")
+    def _is_stated(self):
+        if not any(self.model_dump().values()):
+            raise ValueError(f"expected one of {', '.join(type(self).model_fields)}")
+        return self
+
+
 class Ensemble(Strict):
     """The samples: how many, of which variables, how correlated; or a table of own ones."""
 
@@ -55,7 +90,17 @@ class Ensemble(Strict):
     size: Whole = Field(
         ge=SMALLEST_SIZE,
         le=LARGEST_SIZE,
-        description="samples of the Latin hypercube; another size is another design: all samples change [1]",
+        description="samples; without `batch` another size is another design: all samples change [1]",
+    )
+    batch: Whole | None = Field(
+        None,
+        ge=SMALLEST_SIZE,
+        description="size of the first Latin hypercube and of every addition to it, of which `size` is a multiple: "
+        "samples and runs of a smaller size are kept; none: one hypercube [1]",
+    )
+    until: Until | None = Field(
+        None,
+        description="accuracy from which on no `batch` is added, with `size` the largest; none: all of `size`",
     )
     seed: Count = Field(description="of the design [1]")
     distributions: dict[str, Distribution] = Field(
@@ -89,6 +134,14 @@ class Ensemble(Strict):
             if said not in (None, told.get(key)):
                 raise InputError("", f"ensemble.{key}", "expected no such key beside `table`, which tells it")
         return given | told
+
+    @model_validator(mode="after")
+    def _grows(self):
+        if self.until is not None and self.batch is None:
+            raise ValueError("expected `batch`, by which samples are added, beside `until`")
+        if self.batch is not None and (self.table or self.size % self.batch):
+            raise ValueError("expected `batch` beside a `size` that is a multiple of it, and no table")
+        return self
 
     @field_validator("distributions", mode="before")
     @classmethod

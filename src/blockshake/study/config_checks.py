@@ -325,8 +325,11 @@ def check_fragility(asked, config, structures, where):
             )
     _each_once(asked.cases, where, "fragility.cases")
     _one_of(asked.model, config.models, where, "fragility.model")
-    if asked.size > config.ensemble.size:
-        raise InputError(where, "fragility.size", f"expected at most ensemble.size, {config.ensemble.size}")
+    first = config.ensemble.size if config.ensemble.until is None else config.ensemble.batch
+    if asked.size > first:
+        raise InputError(
+            where, "fragility.size", f"expected at most the first samples of the ensemble, {first}"
+        )
 
 
 def check_limits(asked, config, structures, where):

@@ -194,7 +194,7 @@ def test_the_chance_to_overturn_is_that_of_direct_integration(tmp_path):
     np.testing.assert_allclose(found["intensity"], scales * ground.max(), rtol=1e-6)
     count = int(exceeded.sum())
     assert tuple(found["probability_interval"].sel(limit="tips").values) == share_interval(count, len(scales))
-    assert f"tips (tilt over 40.0 deg): {count} of 17 samples" in sentence(found.sel(limit="tips"))
+    assert f"tips (tilt over 40 deg): {count} of 17 samples" in sentence(found.sel(limit="tips"))
     made = sample_figures(xr.concat([xr.open_dataset(one) for one in batches], dim="sample"))
     write_dataset(tmp_path / "results" / "samples" / "nscd-rigid" / "block.nc", made)
     write_dataset(tmp_path / "results" / "limits" / "nscd-rigid" / "block.nc", found)

@@ -20,6 +20,7 @@ from blockshake.study.analyses import ANALYSES, OF_THE_PAPER
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.ensemble import measured_curves
 from blockshake.study.ensembles.envelope import single_figures
+from blockshake.study.growth import FILE
 from blockshake.study.sampling.distributions import load_distributions
 from blockshake.study.sampling.sample_parameters import has_parameter
 from blockshake.study.sampling.sample_table import load_design
@@ -134,6 +135,7 @@ class Content:
     motions: dict  # str to xarray.Dataset; from `describe_motion`, by name
     design: pd.DataFrame  # pandas.DataFrame; one row a sample
     design_summary: dict
+    growth: str  # why a study that grows stopped; empty of others
     distributions: dict  # str to Lognormal
     # of Calibrated; every case in one of them; empty where the study tells of no contact stiffness
     calibrated: tuple
@@ -210,6 +212,7 @@ def load_content(study, results, only=None):
         motions=motions,
         design=load_design(design),
         design_summary=load_json(results / "design.json"),
+        growth=load_json(results / FILE)["stopped"] if (results / FILE).is_file() else "",
         distributions=load_distributions(study["ensemble"].get("distributions"), study["name"]),
         calibrated=_calibrated(read["stiffness"], read["waves"]),
         calibration=next(iter(read["calibration"].values()), None),

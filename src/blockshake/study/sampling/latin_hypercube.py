@@ -86,6 +86,7 @@ def draw_samples(
     stratum: str = "median",
     kind: str = "pearson",
     effort: int = DEFAULT_EFFORT,
+    batch: int | None = None,
 ) -> SampleDesign:
     """Latin hypercube samples of the random variables, their correlation brought to a target.
 
@@ -109,6 +110,9 @@ def draw_samples(
         ``pearson``: the correlation is of the physical values; ``spearman``: of their ranks.
     effort : int
         Rounds of annealing; more never gives a larger error.
+    batch : int, optional
+        Size of the first design and of every addition, of which ``size`` is a multiple: the first samples are those of
+        any smaller multiple, to the bit. By default the whole is one hypercube, and another size another design.
 
     Returns
     -------
@@ -125,18 +129,36 @@ def draw_samples(
     McKay, Beckman and Conover (1979) for the strata, Vorechovsky and Novak (2009) for the
     correlation. A log-normal target near -1, or near 1 between variables of unlike variation, can
     lie beyond what any pairing reaches: the error then stays and is reported.
+
+    A design that grows is a chain of Latin hypercubes of one size. The first has the medians of its strata. In each
+    pair of additions every stratum gets a value on either side of these, nearer and farther by the sequence of van der
+    Corput (1935), the side by chance and the other in the other addition. The correlation is controlled in every
+    addition.
     """
     _check_options(size, seed, stratum, kind, effort)
+    batch = size if batch is None else batch
+    _check_options(batch, seed, stratum, kind, effort)
+    if size % batch or (size > batch and stratum != "median"):
+        raise InputError("sampling", "batch", f"expected medians, and a size that is a multiple of {batch}")
     if not isinstance(distributions, dict) or not all(
         hasattr(one, "stratum_medians") for one in distributions.values()
     ):
         distributions = load_distributions(distributions, "sampling")
     names = list(distributions)
     target = complete_correlation(correlation, names)
-    strata = [getattr(distribution, f"stratum_{stratum}s")(size) for distribution in distributions.values()]
-    columns = np.column_stack(strata)
-    order = arrange(_correlated(columns, kind), target, seed, effort)
-    values = np.take_along_axis(columns, order, axis=0)
+    parts = []
+    for number in range(size // batch):
+        variables = distributions.values()
+        if number == 0:
+            strata = [getattr(variable, f"stratum_{stratum}s")(batch) for variable in variables]
+        else:
+            inside = _places(batch, number, len(names), seed)
+            chances = (np.arange(batch) + inside) / batch
+            strata = [variable.quantile(chance) for variable, chance in zip(variables, chances, strict=True)]
+        columns = np.column_stack(strata)
+        order = arrange(_correlated(columns, kind), target, [seed, number] if number else seed, effort)
+        parts.append(np.take_along_axis(columns, order, axis=0))
+    values = np.concatenate(parts)
     reached = np.atleast_2d(np.corrcoef(_correlated(values, kind), rowvar=False))
     return SampleDesign(
         values=pd.DataFrame(values, columns=names, index=pd.RangeIndex(size, name="sample")),
@@ -147,6 +169,19 @@ def draw_samples(
         seed=int(seed),
         effort=int(effort),
     )
+
+
+def _places(size, number, n_variables, seed):
+    """Places within its strata of an addition's values, float64 (n_variables, size) in (0, 1); 0 is the first design.
+
+    Additions 1 and 2, 3 and 4 and so on are pairs.
+    """
+    pair, second = (number + 1) // 2, number % 2 == 0
+    digits = np.array([int(one) for one in f"{pair:b}"[::-1]])
+    off = 0.5 * float(digits @ 0.5 ** np.arange(1, len(digits) + 1))  # 1/4, 1/8, 3/8, ...
+    bits = np.random.PCG64(np.random.SeedSequence([seed, pair], spawn_key=(2,)))
+    above = (bits.random_raw(n_variables * size).reshape(n_variables, size) >> np.uint64(63)).astype(bool)
+    return np.where(above != second, 0.5 + off, 0.5 - off)
 
 
 def _correlated(values, kind):
@@ -205,7 +240,7 @@ def complete_correlation(correlation, names):
 
 
 def draw_design(ensemble):
-    """`SampleDesign` of a configuration's ensemble: its own table, or a mapping with four arguments of `draw_samples`.
+    """`SampleDesign` of a configuration's ensemble: its own table, or a mapping with arguments of `draw_samples`.
 
     Own samples stay in their order; the correlation that they have is their target.
     """
@@ -215,4 +250,5 @@ def draw_design(ensemble):
             np.atleast_2d(np.corrcoef(values, rowvar=False)), values.columns, values.columns
         )
         return SampleDesign(values, reached, reached, "pearson", "own", int(ensemble["seed"]), 0)
-    return draw_samples(*(ensemble[key] for key in ("size", "seed", "distributions", "correlation")))
+    given = (ensemble[key] for key in ("size", "seed", "distributions", "correlation"))
+    return draw_samples(*given, batch=ensemble.get("batch"))

@@ -28,6 +28,7 @@ def samples(content):
                 f"{summary['correlation_kind']} correlation differs from it by "
                 f"{number(summary['largest_correlation_error'])} at most."
             )
+            + (f" The design grew and {content.growth}." if content.growth else "")
             + _without_use(content)
         ),
         Figure(
