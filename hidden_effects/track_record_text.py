@@ -79,10 +79,6 @@ def in_words(record):
 _SAID = {
     "false_alarms": "An effect was called where nothing was hidden",
     "truth_in_set_seen": "A hidden effect that the tests can show was named, or listed among the possible causes",
-    "outside_unknown": "A cause outside of the list was called unknown, or a rope one class with a stop",
-    "outside_named": "Such a cause got a listed name alone",
-    "false_beside": "A cause that is not there was asserted beside a true one",
-    "pairs_both": "Both of two causes were held",
 }
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from blockshake import run_diagnosis
 from blockshake.cli import main
+from blockshake.diagnosis.answer.decision import Estimate
 from blockshake.diagnosis.verdict.ladder import NOTHING, ONE_OF, PROBABLE, UNKNOWN
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE
@@ -139,6 +140,12 @@ def test_functions_of_the_package_are_no_modules(tmp_path):
 def test_the_last_line_says_the_verdict(tmp_path, capsys, monkeypatch, decision, causes, outside, word, line):
     form = outside and SimpleNamespace(title=outside)
     told = SimpleNamespace(decision=decision, causes=causes, word=word, outside=form)
+    told.parameters = {"weak-joint": {"factor": Estimate(estimate=0.4, lower=0.3, upper=0.5, unit="1")}}
+    told.missing, told.next_test = ("no gain",), "tilt the slab"
     monkeypatch.setattr(run_diagnosis, "diagnose", lambda *arguments: told)
     assert main(["diagnose", str(CAMPAIGN), "--output", str(tmp_path)]) == 0
-    assert capsys.readouterr().out.splitlines()[-1] == f"{line}; {tmp_path}/report.html"
+    *reasons, last = capsys.readouterr().out.splitlines()
+    assert last == f"{line}; {tmp_path}/report.html"
+    assert [
+        one for one in ("40 % (30 to 50)", "no gain", "tilt the slab") if one not in " ".join(reasons)
+    ] == []

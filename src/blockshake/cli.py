@@ -387,7 +387,22 @@ def _diagnose(options):
     acting = [*verdict.causes, *([verdict.outside.title] if verdict.outside else [])]
     kind = f" ({verdict.decision})" if verdict.causes else ""
     named = f"{kind}: {', '.join(acting)}" if acting else ""
+    for line in _reasons(verdict):
+        print(line)
     print(f"{verdict.word}{named}; {options.output}/report.html")
+
+
+def _reasons(verdict):
+    """Lines of the terminal before the verdict: sizes, what is missing, and the measurement that would decide."""
+    from blockshake.diagnosis.wording import estimate_words, name_of
+
+    for cause, sizes in verdict.parameters.items():
+        words = [f"{name} {estimate_words(name, one)}" for name, one in sizes.items()]
+        yield f"{name_of(cause)}: {', '.join(words)}"
+    if verdict.missing:
+        yield f"not established: {'; '.join(verdict.missing)}"
+    if verdict.next_test:
+        yield f"next: {verdict.next_test}"
 
 
 def _plan_campaign(options):

@@ -19,10 +19,9 @@ def track_record_section(diagnosed):
         return Section("Track record of the procedure", "track-record", (Text(text, strong=True),))
     blocks = [
         Text(
-            f"The procedure was run on {record.date}, sources {record.commit}, on campaigns in which the "
-            "truth was known to the scorer alone (docs/results/hidden-effects.md). Each figure is that of the "
-            "laboratory in which it is worst. The figures hold for such campaigns; on another structure they are an "
-            "indication."
+            f"Campaigns whose truth only the scorer knew, {record.date}, sources {record.commit}; each figure in the "
+            "laboratory in which it is worst. On another structure the figures are an indication. All of them: "
+            "docs/results/hidden-effects.md."
         )
     ]
     if record.part != WHOLE:
