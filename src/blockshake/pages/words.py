@@ -5,7 +5,6 @@ import re
 
 import jinja2
 
-from blockshake.pages.units import printed
 from blockshake.pages.wording import (
     MISSING,
     count_words,
@@ -63,18 +62,11 @@ _FILTERS = {
     "parameter": parameter_label,
     "percent": whole_percent,
     "share": share_words,
-    "unit": lambda unit: printed(unit).name,
 }
 
 
 class Words:
-    """Macros of a template: each a function whose text is one line of words, or a list of them.
-
-    Parameters
-    ----------
-    module : str
-        Name of the module that computes the facts; the template of its name is in ``words`` beside it.
-    """
+    """Macros of the template in ``words`` with the name of a module, which computes the facts that fill them in."""
 
     def __init__(self, module):
         self._package, _, name = module.rpartition(".")

@@ -22,12 +22,13 @@ _WORDS = Words(__name__)
 def answer(content):
     """Verdict, three numbers, structure and displacement, a row a case, differences, gaps and next steps: a page."""
     stripes = content.stripes
+    named = {one.name: one for one in stripes}
     found = {one.name: ended for one in stripes if (ended := outcomes(one))}
     if not found:
         return Section("Answer", "answer", (*_synthetic(content), Text(_WORDS.nothing())))
     apart, tried = models_apart(stripes, found)
-    theory = {one.stripe: theory_of(_named(stripes, one.stripe), one) for one in reversed(apart)}
-    shown = _named(stripes, most_telling(found))
+    theory = {one.stripe: theory_of(named[one.stripe], one) for one in reversed(apart)}
+    shown = named[most_telling(found)]
     blocks = [
         Text(_asked(content)),
         Box(_verdict(content, found), _facts(stripes, found, shown, theory)),
@@ -35,7 +36,6 @@ def answer(content):
         _figure(content, found, shown),
         _table(stripes, found),
     ]
-    named = {one.name: one for one in stripes}
     for title, key, sentences in (
         ("Which model to use", "models-apart", _differences(content, apart, tried, theory, found)),
         ("Tests and intensities", "beside", (*_measured(content, found), *_intensities(content))),
@@ -45,10 +45,6 @@ def answer(content):
     ):
         blocks += [Heading(title, key), Items(tuple(sentences))] if sentences else []
     return Section("Answer", "answer", tuple(blocks))
-
-
-def _named(stripes, name):
-    return next(one for one in stripes if one.name == name)
 
 
 def _asked(content):
@@ -226,8 +222,7 @@ def _differences(content, apart, tried, theory, found):
 
 def _is_rigid_contact(model):
     """Whether a model has rigid blocks that meet without springs."""
-    solver = solver_of(model)
-    return solver.rigid and not solver.calibrated
+    return solver_of(model).rigid and not solver_of(model).calibrated
 
 
 def _measured(content, found):

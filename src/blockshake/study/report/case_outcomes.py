@@ -106,10 +106,7 @@ def _outcome(structure, response):
 
 
 def evidence(ended):
-    """The best evidence: `Outcome` by model, of those that bear limits with about the most samples.
-
-    Of all models where none bears limits. ``ended``: `outcomes` of a stripe.
-    """
+    """Those of `outcomes` that bear limits with about the most samples; all where none bears limits."""
     most = max(one.counted for one in ended.values())
     return {
         model: one

@@ -143,10 +143,11 @@ def _by_model(cases, count):
 
 def _chaotic(cases):
     """Time by case and model at which a sample and its twin part within the window [s]."""
-    times = [(case, model, float(one)) for case in cases for model, one in _horizons(case)]
-    return [(case.name, model, time) for case, model, time in times if time < case.settings["duration"]]
-
-
-def _horizons(case):
-    horizons = case.differences["horizon"]
-    return zip(horizons["model"].values, horizons.values, strict=True)
+    return [
+        (case.name, model, float(time))
+        for case in cases
+        for model, time in zip(
+            case.responses, case.differences["horizon"].sel(model=list(case.responses)), strict=True
+        )
+        if float(time) < case.settings["duration"]
+    ]
