@@ -51,8 +51,19 @@ def test_of_a_sealed_test_shape_and_noise_are_told_and_no_more(tmp_path):
     lines = _lines(tmp_path, answer, role="sealed")
     assert f"{len(MARKERS)} markers" in lines[1]
     assert "table moved" not in lines[1]
-    (remark,) = lines[lines.index("remarks:") + 1 :]
+    remark, sealed = lines[lines.index("remarks:") + 1 :]
+    assert sealed == "  all tests are sealed: a diagnosis has none to read"
     assert "along x, y, z" in remark  # halved along x alone
+
+
+@pytest.mark.parametrize("ratio", [0.5, 2.0, -3.0])
+def test_a_column_that_is_a_multiple_of_another_is_remarked(ratio, tmp_path):
+    def spoil(test):
+        readings = test["marker_displacement"]
+        readings[:, BLOCKS[-1], 1] = ratio * readings[:, BLOCKS[0], 1]
+
+    name, other = MARKERS[BLOCKS[-1]], MARKERS[BLOCKS[0]]
+    assert any(f"{name}.y is {other}.y times {ratio:g}" in line for line in _lines(tmp_path, spoil))
 
 
 def test_a_marker_that_no_test_reads_and_a_weak_table_are_remarked(tmp_path):

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from blockshake.geometry.schema import AXES
 from blockshake.geometry.structure import load_structure
 from blockshake.geometry.structure_file import point_remarks
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
@@ -43,6 +44,8 @@ _QUIET = 0.5  # s at most that are taken as the quiet start
 _QUIET_PART = 0.02  # of the commanded peak displacement: the record is quiet until the command reaches it
 _AT_START = 10  # readings whose mean is the start
 _SILENT = 10  # readings in a row that all are gaps
+# of two columns with noise: one minus their correlation, and how far from 1 their ratio is
+_MULTIPLE, _RATIO = 1e-9, 0.01
 _START = 10.0  # times the noise, within which displacements start: the first reading's own is in all others
 
 
@@ -94,6 +97,8 @@ def campaign_lines(folder):
     unread = [f"marker {marker.name}" for marker in structure.file.markers if marker.name not in seen]
     unread += [f"displacement transducer {name}" for name in transducer_names(structure) if name not in seen]
     remarks += [f"  {name} of the structure is in no test" for name in unread]
+    if all(entry.role == "sealed" for entry in campaign.tests.values()):
+        remarks.append("  all tests are sealed: a diagnosis has none to read")
     return lines + (["remarks:", *remarks] if remarks else ["no inconsistency found"])
 
 
@@ -171,6 +176,7 @@ class _Described:
                 f"marker noise {1e3 * usual:.3g} mm in the quiet {1e3 * (quiet_end - self.time[0]):.3g} ms"
             )
             self.remarks += displacement_remarks("marker", names, noise, stated)
+            self.remarks += _multiples(names, self.readings) if usual > 0.0 else []
             self._hold_start(quiet)
         else:
             self.facts.append("no quiet start to find the noise in")
@@ -240,6 +246,23 @@ class _Described:
             readings = readings[:, np.isin(self.test["channel"], channels)].mean(axis=1)
             time_acc, slab = self.test["time_acc"].to_numpy(), self.slab[:, 0]
             self.remarks += clock_remarks(self.time, slab, time_acc, readings, self.slab_noise, self.path)
+
+
+def _multiples(names, readings):
+    """Remarks on columns (n_times, n_markers, 3) that are another's multiple, noise and all."""
+    columns = [f"{name}.{axis}" for name in names for axis in AXES]
+    values = readings.reshape(len(readings), -1)
+    values = values - values.mean(axis=0)
+    size = np.sqrt((values**2).sum(axis=0))
+    whole = np.flatnonzero(size > 0.0)  # without gaps too
+    units = values[:, whole] / size[whole]
+    first, second = np.nonzero(np.triu(np.abs(units.T @ units) > 1.0 - _MULTIPLE, k=1))
+    remarks = []
+    for one, other in zip(whole[first], whole[second], strict=True):
+        ratio = float(values[:, other] @ values[:, one] / size[one] ** 2)
+        if abs(ratio - 1.0) > _RATIO:
+            remarks.append(f"{columns[other]} is {columns[one]} times {ratio:.4g}: one column mapped twice?")
+    return remarks
 
 
 def _silence(name, time, readings):
