@@ -22,6 +22,7 @@ from blockshake.study.fragility.climb import gathered
 from blockshake.study.fragility.fragility import fragility
 from blockshake.study.sampling.distributions import TABLE_2
 from blockshake.study.sampling.latin_hypercube import draw_samples
+from blockshake.study.sensitivity.indices import indices_of_case
 from blockshake.study.sensitivity.sensitivity import sensitivity
 
 MODELS = {
@@ -174,6 +175,10 @@ class FakeStudy:
                 ("sensitivities", sensitivity(ensemble, list(self.design.columns))),
             ):
                 write_dataset(self.results / kind / model / f"{name}.nc", result)
+            made = [
+                self.results / kind / model / f"{name}.nc" for kind in ("samples", "sensitivities", "indices")
+            ]
+            write_dataset(made[2], indices_of_case(*made[:2], None, 77))
             log = self.logs / "simulate_batch" / model / name / f"000-{count - 1:03d}.log"
             write_text(log, f"Took 50.0 s, {CPU_TIME} CPU s.\n")
 

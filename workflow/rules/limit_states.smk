@@ -25,6 +25,31 @@ rule measure_limit_states:
         "../scripts/measure_limit_states.py"
 
 
+rule measure_indices:
+    """Shapley effects and Sobol indices of a case's responses, by a surrogate of the runs, where it is good enough."""
+    input:
+        samples="results/{study}/samples/{model}/{case}.nc",
+        sensitivity="results/{study}/sensitivities/{model}/{case}.nc",
+        limits=lambda wildcards: [
+            f"results/{wildcards.study}/{file}"
+            for analysis in ANALYSES
+            if analysis.name == "limits"
+            for pair, file in analysis.files(config).items()
+            if pair == (wildcards.case, wildcards.model)
+        ],
+    output:
+        "results/{study}/indices/{model}/{case}.nc",
+    log:
+        "logs/{study}/measure_indices/{model}/{case}.log",
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        seed=lookup(dpath="ensemble/seed", within=config),
+        source=source_of("measure_indices"),
+    script:
+        "../scripts/measure_indices.py"
+
+
 rule write_responses:
     """All answers in one table: a row a run, with its sampled values, its motion, its responses and how it ended."""
     input:

@@ -93,6 +93,7 @@ ANALYSES = (
     Analysis("shown", "shown/{model}/{case}.nc"),
     Analysis("comparisons", "comparisons/{model}/{case}.nc", cases=_measured_cases),
     Analysis("sensitivities", "sensitivities/{model}/{case}.nc"),
+    Analysis("indices", "indices/{model}/{case}.nc"),
     Analysis("differences", "differences/{case}.nc"),
     Analysis(
         "fragility", "fragility/{case}.nc", load_made, _cases_of("fragility"), "fragility", check_fragility

@@ -38,6 +38,7 @@ class Response:
     comparison: xr.Dataset | None
     sensitivity: xr.Dataset
     cloud: xr.Dataset | None = None
+    indices: xr.Dataset | None = None  # from `indices_of_case`
     limits: xr.Dataset | None = None  # from `limit_states_of_case`, where the study has limit states
 
     def at(self, levels, level):
@@ -234,6 +235,7 @@ def _case(study, read, name, settings):
             comparison=read["comparisons"].get((name, model)),
             sensitivity=read["sensitivities"][name, model],
             cloud=read["clouds"].get((name, model)),
+            indices=read["indices"][name, model],
             limits=read["limits"].get((name, model)),
         )
         for model in study["models"]

@@ -13,6 +13,7 @@ from blockshake.study.report.content import load_content
 from blockshake.study.report.opening_sections import figures, motions, structures
 from blockshake.study.report.result_sections import responses
 from blockshake.study.sampling.section import samples
+from blockshake.study.sensitivity.indices_section import shares
 from blockshake.study.sensitivity.section import sensitivities
 from blockshake.study.stiffness.section import stiffness
 
@@ -28,6 +29,7 @@ _SECTIONS = (
     fragility,
     models,
     sensitivities,
+    shares,
     calibration,
     extension,
     limits,
