@@ -4,5 +4,7 @@ from blockshake.study.sensitivity.indices import indices_of_case
 
 with logging_to(snakemake.log[0]):
     input = snakemake.input
-    found = indices_of_case(input.samples, input.sensitivity, input.limits or None, snakemake.params.seed)
+    found = indices_of_case(
+        input.samples, input.sensitivity, next(iter(input.limits), None), snakemake.params.seed
+    )
     write_dataset(snakemake.output[0], found)
