@@ -24,6 +24,7 @@ class BodyMarkers:
 
     markers: tuple  # of str
     points: np.ndarray  # float64 (n_markers, 3); body frame [m]
+    box: np.ndarray  # float64 (2, 3); ends of the body along its own axes, from its centroid [m]
     # position, rotation: float64 (n_tests, 3), (n_tests, 3, 3); pose at rest in each test; of one test, see
     # `in_test`, (3,) and (3, 3)
     position: np.ndarray
@@ -45,6 +46,7 @@ class BodyMarkers:
         return cls(
             tuple(carried),
             np.array([marker.position for marker in markers], dtype=float).reshape(-1, 3),
+            np.array([extent(structure.solid(index).vertices, axis=0) for extent in (np.min, np.max)]),
             np.array([start.position[index] for start in starts]),
             rotation_matrices([start.orientation[index] for start in starts]),
             np.sqrt(rotation_matrices(structure.orientation[index]).T ** 2 @ np.array(axes) ** 2),

@@ -87,7 +87,7 @@ def data_alone(mean, covariance, spread):
     return alone @ (information @ mean), alone
 
 
-def name_faults(equations_of, unknowns, level, names, most, sound=0):
+def name_faults(equations_of, unknowns, level, names, most, sound=0, possible=None):
     """Name the clearest fault, make the equations anew with this one free, and so on, until no fault is clear.
 
     Parameters
@@ -102,6 +102,8 @@ def name_faults(equations_of, unknowns, level, names, most, sound=0):
         Faults.
     sound : int
         Sensors that have to be left without a fault.
+    possible : callable of (fault, estimate), optional
+        Whether a fault may have that size; by default any.
 
     Returns
     -------
@@ -131,6 +133,8 @@ def name_faults(equations_of, unknowns, level, names, most, sound=0):
             if fault in named:
                 continue
             estimate, alone = data_alone(mean[numbers], covariance[np.ix_(numbers, numbers)], spread[numbers])
+            if possible is not None and not possible(fault, estimate):
+                continue
             tied = alone + np.diag(spread[numbers] ** 2)
             gained[fault] = estimate @ np.linalg.solve(tied, estimate) - 2.0 * len(numbers)
             p = chance_within(estimate, alone, fault.column.tolerance, equations.freedom)

@@ -14,6 +14,7 @@ from blockshake.parity.linear_faults import Equations, Unknowns, coloured_varian
 _SOUND_MARKERS = 2  # of a body, that must be left without a fault, or nothing says which is at fault
 _MOST_FAULTS = 8  # faults on one body
 _LINEARISATIONS = 4
+_BRACKET = 0.1  # m, by which a marker may stand off its body
 _WEAK_LEVER = 0.1  # lever of the markers about an axis, over the largest: the turn about it is mostly noise
 _TURNS = 2.0  # standard deviations: of less the turn about an axis is taken to be noise as well
 _SMOOTHING = 101  # readings, half a second, over which such a turn is averaged
@@ -65,7 +66,7 @@ def check_body(body, marker_noise, level):
     In the body's frame with rotation R(t) and start R0, what remains of a reading is P applied to the sum over the
     markers of ``c + R' s d + R' u g + (1 - R' R0) e`` with constant c, drift d over the record (s from -1/2 to 1/2),
     gain g of the displacement u and place e: a gain follows the displacement, a wrong place follows the rotation and is
-    nothing before it. The equations are made anew about the faults that were named.
+    nothing before it. A place off the body is none. The equations are made anew about the faults that were named.
     """
     creep = drift.of_marker(marker_noise)
     columns = creep, gain.OF_MARKER, wrong_place.OF_MARKER
@@ -81,12 +82,19 @@ def check_body(body, marker_noise, level):
             equations, *made["noise"] = _linearised(body, unknowns, sizes, faults, marker_noise)
         return equations
 
+    def on_the_body(fault, estimate):
+        place = body.points[fault.sensor] + estimate
+        within = (body.box[0] - _BRACKET <= place) & (place <= body.box[1] + _BRACKET)
+        return fault.column is not wrong_place.OF_MARKER or bool(within.all())
+
     named, equations, spread = name_faults(
-        equations_of, unknowns, level, body.markers, _MOST_FAULTS, _SOUND_MARKERS
+        equations_of, unknowns, level, body.markers, _MOST_FAULTS, _SOUND_MARKERS, on_the_body
     )
     covariance, findings = equations.posterior(spread)[1] if named else None, []
     for fault, p in named.items():
         numbers, by_test = unknowns.of(fault), fault.column is creep
+        if not on_the_body(fault, sizes[numbers]):  # moved there by a fault that was named later
+            continue
         tests = (body.tests[fault.test],) if by_test else body.tests
         length = np.ptp(body.readings[fault.test][0]) if by_test else 1.0
         square = covariance[np.ix_(numbers, numbers)] / length**2
