@@ -19,6 +19,7 @@ _MOST_GAPS = 0.2  # of a sensor's readings in it
 _LEAST = 0.5  # of the stated noise: rounded readings may not move at all in a rest
 _STATED = 100.0  # readings that what is stated counts for
 _FAR_SHARE = 0.1  # of the variance: a slow part that is farther from the stated one is remarked
+_FILTERED = 0.03  # s; of a shorter memory are filters, whose noise no campaign states
 _UNEVEN = 1.1  # between the noise along two axes, within which one figure says both
 _OFFSET = 100.0  # variance of a constant, over that of the noise
 
@@ -87,12 +88,16 @@ def noise_remarks(found, stated):
         abs(np.log(found.noise_by_axis / found.marker_noise * stated.marker_noise / stated.noise_by_axis))
     )
     slow = [
-        abs(getattr(found, part).share - getattr(stated, part).share) >= _FAR_SHARE
+        abs(_slow_share(getattr(found, part)) - _slow_share(getattr(stated, part))) >= _FAR_SHARE
         for part in ("marker_slow", "accelerometer_slow")
     ]
     if far < np.log(_UNEVEN) and not any(slow):
         return []
     return [f"at rest the {noise_words(found)}; stated is a {noise_words(stated)}"]
+
+
+def _slow_share(slow):
+    return slow.share if slow.memory > _FILTERED else 0.0
 
 
 def _of_markers(test, until, structure):
