@@ -113,7 +113,7 @@ def test_a_killed_sample_goes_on_in_the_store(model, tmp_path, monkeypatch):
 
     def attempt(store):
         runs = CaseRuns(case, model, {"time_step": step}, {}, 50.0)
-        return simulate_samples(runs, lambda sample: motion, rows, Store(store, "source"))
+        return simulate_samples(runs, lambda sample, row: motion, rows, Store(store, "source"))
 
     (whole,) = attempt(tmp_path / "whole")
 
