@@ -73,7 +73,6 @@ rule write_responses:
         "../envs/blockshake.yaml"
     params:
         study={key: config[key] for key in ("cases", "models", "limits", "ensemble")},
-        results="results/{study}",
         source=source_of("write_responses"),
     script:
         "../scripts/write_responses.py"

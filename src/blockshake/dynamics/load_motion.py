@@ -89,8 +89,10 @@ def load_motion(
     if not np.isfinite(scale) or scale == 0.0:
         raise InputError(where, "scale", f"expected a finite number other than 0, found {scale}")
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # looked at below
-        given = isinstance(source, GroundMotion)
-        motion = source if given else _read(source, baseline, channels, components or {})
+        if isinstance(source, GroundMotion):
+            motion = source
+        else:
+            motion = _read(source, baseline, channels, components or {})
     return scaled(motion if name is None else replace(motion, name=name), scale, where)
 
 
