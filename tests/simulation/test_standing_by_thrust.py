@@ -27,17 +27,19 @@ def centroid(corners):
 
 @pytest.fixture
 def falls(make_structure, tmp_path):
-    """Whether stones fall that are left alone: polygons in the plane of x and z, extruded along y, on the slab."""
+    """Whether stones fall that are left alone: polygons in x and z, extruded along y, turned by a heading [rad]."""
 
-    def judge(stones, friction=FRICTION):
-        bodies, shapes = [], {}
+    def judge(stones, friction=FRICTION, heading=0.0):
+        bodies, shapes, cos, sin = [], {}, np.cos(heading), np.sin(heading)
         for number, corners in enumerate(np.asarray(stone, dtype=float) for stone in stones):
             middle, _ = centroid(corners)
             solid = [(x, y, z) for (x, z), y in itertools.product(corners - middle, (-DEPTH / 2, DEPTH / 2))]
             trimesh.convex.convex_hull(solid).export(tmp_path / f"{number}.obj")
             shapes[f"stone-{number}"] = {"mesh": f"{number}.obj"}
-            place = [float(middle[0]), 0.0, float(middle[1])]
-            bodies.append({"name": f"stone-{number}", "shape": f"stone-{number}", "position": place})
+            place = [float(value) for value in (middle[0] * cos, middle[0] * sin, middle[1])]
+            turn = [float(np.cos(heading / 2.0)), 0.0, 0.0, float(np.sin(heading / 2.0))]
+            name = f"stone-{number}"
+            bodies.append({"name": name, "shape": name, "position": place, "orientation": turn})
         one = make_structure(bodies, folder=tmp_path, shapes=shapes, friction=friction)
         return still_falling(one, one.position, one.orientation, np.zeros_like(one.position)) is not None
 
@@ -110,6 +112,13 @@ def test_an_arch_stands_from_its_least_thickness_on(falls, count):
 
 def test_an_arch_of_three_stones_stands(falls):
     assert not falls(arch(3, 0.2))
+
+
+@pytest.mark.parametrize("degrees", [20, 45, 90])
+def test_an_arch_stands_whichever_way_it_spans(falls, degrees):
+    heading = np.radians(degrees)
+    assert not falls(arch(15, 0.13), friction=0.4, heading=heading)
+    assert falls(arch(15, 0.13), friction=0.35, heading=heading)
 
 
 @pytest.mark.parametrize("ratio", [0.95, 1.05])

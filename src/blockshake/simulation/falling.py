@@ -16,6 +16,7 @@ from blockshake.measurement.motion.joints import parting_normal
 from blockshake.solvers.external_forces import closure_into
 
 _TOUCH = 1e-3  # m, below which two surfaces touch: rattling blocks hop by less
+_EDGES = 16  # of the pyramid of friction: within 2 % of the cone, whichever way an arch spans
 _UNCARRIED = 1e-4  # of the weight of a block, or of it at a lever of the block's size, that counts as carried
 
 
@@ -218,7 +219,8 @@ def _uncarried(structure, supports, ahead, up, watched):
         tangents = np.linalg.svd(support.normal[None])[2][1:]
         # a force within friction is a sum of forces along the edges of a pyramid
         edges = [
-            support.normal + sign * support.friction * tangent for tangent in tangents for sign in (1.0, -1.0)
+            support.normal + support.friction * (np.cos(turn) * tangents[0] + np.sin(turn) * tangents[1])
+            for turn in np.arange(_EDGES) * 2.0 * np.pi / _EDGES
         ]
         force = np.repeat(edges, len(support.corners), axis=0)
         corners = np.tile(support.corners, (len(edges), 1))
