@@ -43,9 +43,13 @@ STRUCTURE = {
          "reference_position": [1.0, 0.0, 1.6], "axis": "-x"},
     ],
 }  # fmt: skip
+NOISE = {
+    "marker_axes": [1.0, 1.0, 1.2], "marker_slow": {"share": 0.1, "memory": 0.1},
+    "accelerometer_slow": {"share": 0.1, "memory": 0.1},
+}  # fmt: skip
 CAMPAIGN = {
     "name": "tests", "structure": "wall.yaml",
-    "sensors": {"marker_noise": 1e-4, "accelerometer_noise": 0.02, "transducer_noise": 1e-4},
+    "sensors": {"marker_noise": 1e-4, "accelerometer_noise": 0.02, "transducer_noise": 1e-4, **NOISE},
     "tests": [
         {"name": "t1", "file": "t1.csv", "motion": "push.csv", "scale": 1.0, "baseline": "auto", "role": "fit"},
         {"name": "t2", "file": "t2.csv", "motion": "push.csv", "scale": 0.5, "role": "fit"},
@@ -54,7 +58,7 @@ CAMPAIGN = {
 }  # fmt: skip
 IMPORT = {
     "name": "imported", "structure": "wall.yaml", "sensors": {"marker_noise": 1e-4, "accelerometer_noise": 0.02,
-                                                               "transducer_noise": 1e-4},
+                                                               "transducer_noise": 1e-4, **NOISE},
     "layout": {"separator": ",", "decimal": ".", "header": 1, "data": 2},
     "time": {"column": "time_s", "unit": "s"},
     "displacement_unit": "m", "rotation_unit": "rad", "acceleration_unit": "m/s2", "rest": 0.1, "fill_gaps": False,
@@ -70,7 +74,7 @@ VIRTUAL = {
     "table": {"gain": 1.0, "high": 0.0, "corner": 2.0, "pitch": 0.0}, "misplacement": 0.0,
     "survey_noise": 0.0,
     "instruments": {
-        "marker_noise": 1e-4, "accelerometer_noise": 0.02, "transducer_noise": 1e-4, "noise_memory": 0.0,
+        "marker_noise": 1e-4, "accelerometer_noise": 0.02, "transducer_noise": 1e-4, **NOISE, "noise_memory": 0.0,
         "marker_outliers": 0.0, "accelerometer_offset": 0.0, "marker_lag": 0.0, "marker_drift": [0.0, 0.0, 0.0],
         "marker_gain": {"high-face": 1.1}, "marker_offset": {"high-face": [0.0, 0.0, 0.1]},
         "marker_creep": {"high-face": [1e-4, 0.0, 0.0]}, "marker_range": {"high-face": 1.0},
@@ -342,6 +346,11 @@ ROWS = {
         ("sensors.marker_noise", -1.0, _AT_LEAST),
         ("sensors.accelerometer_noise", -1.0, _AT_LEAST),
         ("sensors.transducer_noise", -1.0, _AT_LEAST),
+        ("sensors.marker_axes", [1.0], "sensors.marker_axes"),
+        ("sensors.marker_slow.share", 2.0, "less than 1"),
+        ("sensors.marker_slow.memory", 0.0, _LOWER),
+        ("sensors.accelerometer_slow.share", -1.0, _AT_LEAST),
+        ("sensors.accelerometer_slow.memory", -1.0, _LOWER),
         ("tests", [], "at least 1 item"),
         ("tests.0.name", "t2", "every test's name once"),
         ("tests.0.file", "nothing.csv", "expected a file in"),
@@ -358,6 +367,11 @@ ROWS = {
         ("sensors.marker_noise", -1.0, _AT_LEAST),
         ("sensors.accelerometer_noise", -1.0, _AT_LEAST),
         ("sensors.transducer_noise", -1.0, _AT_LEAST),
+        ("sensors.marker_axes", [1.0], "sensors.marker_axes"),
+        ("sensors.marker_slow.share", 2.0, "less than 1"),
+        ("sensors.marker_slow.memory", 0.0, _LOWER),
+        ("sensors.accelerometer_slow.share", -1.0, _AT_LEAST),
+        ("sensors.accelerometer_slow.memory", -1.0, _LOWER),
         ("layout.separator", ";", "t1.csv"),
         ("layout.decimal", ";", "'.' or ','"),
         ("layout.header", 0, _AT_LEAST),
@@ -408,6 +422,11 @@ ROWS = {
         ("instruments.marker_noise", -1.0, _AT_LEAST),
         ("instruments.accelerometer_noise", -1.0, _AT_LEAST),
         ("instruments.transducer_noise", -1.0, _AT_LEAST),
+        ("instruments.marker_axes", [1.0], "instruments.marker_axes"),
+        ("instruments.marker_slow.share", 2.0, "less than 1"),
+        ("instruments.marker_slow.memory", 0.0, _LOWER),
+        ("instruments.accelerometer_slow.share", -1.0, _AT_LEAST),
+        ("instruments.accelerometer_slow.memory", -1.0, _LOWER),
         ("instruments.noise_memory", 1.0, "less than 1"),
         ("instruments.marker_outliers", 1.0, "less than 1"),
         ("instruments.accelerometer_offset", -1.0, _AT_LEAST),

@@ -11,7 +11,8 @@ from blockshake.simulation.simulate import simulate
     ("model", "parameters", "duration", "iterations", "capped"),
     [
         # steps cut at Coulomb's cone and shortened took 77 and 60 iterations: docs/decisions/0002-nscd-newton.md
-        ("nscd-rigid", {"nscd.impact_parts": 20}, 10.0, 15.0, 0.01),
+        # the last digits of a processor decide which way a strong run goes: 8 on Zen 4, 16.1 on Zen 3
+        ("nscd-rigid", {"nscd.impact_parts": 20}, 10.0, 20.0, 0.01),
         ("nscd-viscoelastic", {}, 0.3, 20.0, 0.01),
     ],
 )

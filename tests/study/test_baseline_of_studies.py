@@ -92,7 +92,7 @@ def test_every_rule_with_a_motion_knows_its_baseline():
     files = sorted((PACKAGE.parents[1] / "workflow" / "rules").glob("*.smk"))
     rules = [rule for path in files for rule in re.split(r"^rule ", path.read_text(), flags=re.MULTILINE)[1:]]
     named = [rule for rule in rules if re.search(r"motion_file,|unpack\((case|run)_files\)", rule)]
-    assert len(named) == 5
+    assert len(named) == 6
     for rule in named:
         known = re.search(r"BASELINES|case=case_definition|runs=sample_runs|case_keys\(", rule)
         assert known, rule.partition(":")[0]

@@ -42,5 +42,5 @@ def test_every_rule_that_reads_a_file_of_the_user_watches_its_content():
     texts = [path.read_text() for path in sorted((ROOT / "workflow" / "rules").glob("*.smk"))]
     rules = [rule for text in texts for rule in re.split(r"\n(?=rule |checkpoint )", text)]
     readers = [rule for rule in rules if "    params:" in rule and re.search(NAMED, rule.split("output:")[0])]
-    assert len(readers) == 14
+    assert len(readers) == 15
     assert all("yaml_contents=yaml_contents(" in rule for rule in readers)

@@ -3,7 +3,7 @@
 import zlib
 
 import numpy as np
-from scipy.stats import truncnorm
+import scipy
 
 from blockshake.diagnosis.answer.decision import MEMBERS, Estimate
 from blockshake.diagnosis.outside.registry import FORMS
@@ -58,7 +58,7 @@ def _amplitudes(fit, count, generator):
     mean, deviation = fit.size
     deviation = max(float(np.hypot(deviation, FORM * mean)), np.finfo(float).tiny)
     lower, upper = (-mean if fit.positive else -fit.most - mean) / deviation, (fit.most - mean) / deviation
-    drawn = truncnorm.rvs(lower, upper, size=count, random_state=generator)
+    drawn = scipy.stats.truncnorm.rvs(lower, upper, size=count, random_state=generator)
     return mean + deviation * drawn
 
 

@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import numpy as np
+import scipy
 from scipy.linalg import solve_triangular
-from scipy.optimize import nnls
 from scipy.special import logsumexp
 
 from blockshake.diagnosis.evidence.explanation import NEVER, mean_evidence, single
@@ -72,7 +72,7 @@ def _crushed(likelihood, tests, place, key, changed, edge, widest):
     target, gram = likelihood.normal_equations(likelihood.whiten(columns))
     precision = gram + np.diag(scales**-2.0)
     root = np.linalg.cholesky(precision)
-    steps = nnls(root.T, solve_triangular(root, target, lower=True))[0]
+    steps = scipy.optimize.nnls(root.T, solve_triangular(root, target, lower=True))[0]
     inset = float(steps.sum())
     if not 0.0 < inset < widest:
         return
