@@ -12,6 +12,7 @@ from page import texts
 from blockshake.statistics.intervals import share_interval
 from blockshake.study.comparison.paired import models_apart, theory_of
 from blockshake.study.ensembles.envelope import single_figures
+from blockshake.study.limit_states.section import limit_states
 from blockshake.study.report.answer import answer
 from blockshake.study.report.case_outcomes import evidence, most_telling, outcomes
 from blockshake.study.report.content import load_content
@@ -199,6 +200,44 @@ def test_levels_are_never_pooled(content):
     assert not {"10", "60"} & set(
         re.findall(r"\d+", box.sentence.replace("95 %", ""))
     )  # of all runs together
+
+
+def with_limits(content, model, exceeded):
+    """The content with a limit state "tips" of the first case by a model: outcomes of its samples."""
+    case = content.cases[FIRST]
+    one = case.responses[model]
+    made = xr.Dataset(
+        {
+            "value": (("sample", "limit"), np.array(exceeded)[:, None] + 0.0),
+            "exceeded": (("sample", "limit"), np.array(exceeded)[:, None]),
+        },
+        {
+            "sample": one.samples["sample"].values, "limit": ["tips"], "limit_value": ("limit", [np.radians(3.0)]),
+            "measure": ("limit", ["tilt"]), "unit": ("limit", ["rad"]),
+        },
+    )  # fmt: skip
+    responses = {**case.responses, model: replace(one, limits=made)}
+    study = {**content.study, "limits": {"tips": {"body": "block-3", "tilt": 0.05}}}
+    return replace(changed(content, FIRST, responses=responses), study=study)
+
+
+def test_own_limit_states_stand_on_the_first_page_level_by_level(content):
+    """Five of ten tip, all of them at the higher level, and one of these is not known."""
+    limited = with_limits(content, "ls-dem", [0, 1] * 4 + [0, -1])
+    (said,) = parts(limited)[2]["own-limits"]
+    low, high = (round(100.0 * one) for one in share_interval(4, 9, 1))
+    assert said.startswith(f"tips (tilt over 3 deg): 4 of 9 runs of {FIRST} by LS-DEM, 1 not known")
+    assert said.endswith(f"probability {low} to {high} %.")
+    (said,) = parts(at_levels(limited))[2]["own-limits"]
+    assert f"all 4 runs of {FIRST} at 6 m/s² by LS-DEM, 1 not known" in said
+    assert f"{100.0 * share_interval(4, 4, 1)[0]:.0f} to 100 %, the worst of 2" in said
+    table = next(block for block in limit_states(at_levels(limited)).blocks if block.kind == "table")
+    assert [row[6:8] for row in table.rows] == [("0 of 5", "0.0 %"), ("4 of 4", "100.0 %")]
+
+
+def test_a_study_that_grew_says_first_why_it_stopped(content):
+    said = answer(replace(content, growth="stopped at 10 samples, the largest size")).blocks[0].text
+    assert said.endswith("The study stopped at 10 samples, the largest size.")
 
 
 def test_models_are_held_against_each_other_by_level(content):

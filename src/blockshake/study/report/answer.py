@@ -11,6 +11,7 @@ from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.comparison.paired import models_apart, theory_of
 from blockshake.study.ensembles.coverage import is_likely
 from blockshake.study.ensembles.envelope import STILL
+from blockshake.study.limit_states.section import worst_of_each
 from blockshake.study.report.answer_figure import plot_answer
 from blockshake.study.report.case_outcomes import evidence, most_telling, outcomes
 from blockshake.study.report.open_questions import MOST, next_steps, unknown
@@ -36,7 +37,9 @@ def answer(content):
         _figure(content, found, shown),
         _table(stripes, found),
     ]
+    best = {name: evidence(ended) for name, ended in found.items()}
     for title, key, sentences in (
+        ("Your limit states", "own-limits", worst_of_each(stripes, best, MOST)),
         ("Which model to use", "models-apart", _differences(content, apart, tried, theory, found)),
         ("Tests and intensities", "beside", (*_measured(content, found), *_intensities(content))),
         ("Blows between blocks that stand apart", "blows", _blows(found)),
@@ -62,6 +65,7 @@ def _asked(content):
         models=list(content.study["models"]),
         sizes=sorted({min(sizes), max(sizes)}),
         kinds=list(kinds),
+        growth=content.growth,
     )
 
 

@@ -48,7 +48,10 @@ class Response:
         drift = self.envelope["drift_probability"].attrs["largest_drift"]
         # whether a block still moves is known of all levels together alone
         envelope = single_figures(samples, drift).assign(still_moving=self.envelope["still_moving"])
-        return replace(self, envelope=envelope, samples=samples)
+        limits = self.limits
+        if limits is not None:
+            limits = limits[["value", "exceeded"]].sel(sample=samples["sample"].values)
+        return replace(self, envelope=envelope, samples=samples, limits=limits)
 
 
 class Stripe(NamedTuple):
