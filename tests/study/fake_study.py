@@ -52,13 +52,15 @@ def climbed_and_fitted():
                 "passed": place < stands,
                 "status": "completed",
                 "reason": "",
-                "peak": 0.1 * scale,
+                "drift_ratio": 0.25 * scale,
             }
             for place, scale in enumerate(scales[: stands + 1])
         ]
         climbs.append(rungs)
     climbs[-1][-1]["status"] = "not-converged"
-    return fragility(gathered(np.arange(5), climbs, scales, 0.4))
+    return fragility(
+        gathered(np.arange(5), climbs, scales, xr.DataArray([np.nan, 0.4], {"body": ["slab", "block-1"]}))
+    )
 
 
 def ensemble_of(runs, design):

@@ -6,7 +6,6 @@ import numpy as np
 
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.geometry.structure import load_structure
 
 _SAME_HEIGHT = 6  # decimals of a metre
 
@@ -34,7 +33,7 @@ def reference_block(structure):
         raise InputError(structure.source, "bodies", "expected a body that is not driven")
     material = bodies[reference_body(structure)].material
     candidates = [body for body in np.flatnonzero(~structure.driven) if bodies[body].material == material]
-    sizes = {int(body): _upright_size(structure, body) for body in candidates}
+    sizes = {int(body): upright_size(structure, body) for body in candidates}
     weight = {}
     for body, size in sizes.items():
         height = round(float(size[2]), _SAME_HEIGHT)
@@ -45,15 +44,7 @@ def reference_block(structure):
     return ReferenceBlock(body, sizes[body])
 
 
-def half_width(structure):
-    """Half of the smaller width of the reference block [m]: a block that slid so far loses its support.
-
-    ``structure``: what `load_structure` takes.
-    """
-    return 0.5 * float(reference_block(load_structure(structure)).size[:2].min())
-
-
-def _upright_size(structure, body):
+def upright_size(structure, body):
     """Edge lengths of the box around a shape, the axis that is nearest to the vertical last [m]."""
     name = structure.file.bodies[body].shape
     box = structure.file.shapes[name].box

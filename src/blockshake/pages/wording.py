@@ -74,6 +74,11 @@ def millimetres(value):
     return f"{round(1e3 * float(value), 1) + 0.0:.1f}" if np.isfinite(value) else MISSING
 
 
+def millimetre_range(values):
+    """Smallest and largest of some lengths [m] in mm, such as ``50.0 to 400.0``; NaN is none of them."""
+    return " to ".join(sorted({millimetres(np.nanmin(values)), millimetres(np.nanmax(values))}, key=float))
+
+
 def percent(value):
     """A share in percent to 0.1."""
     return f"{100.0 * float(value):.1f}" if np.isfinite(value) else MISSING

@@ -233,8 +233,8 @@ class Ladder(Rungs):
 
     largest_drift: Positive | None = Field(
         None,
-        description="displacement of a block relative to the slab that counts as a potential collapse, by default half "
-        "of the smaller width of the structure's blocks [m]",
+        description="displacement of a block relative to the slab that counts as a potential collapse, of all blocks; "
+        "by default half of each block's own smaller horizontal width [m]",
     )
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 import yaml
 
 from blockshake.statistics.intervals import share_interval
@@ -56,7 +57,7 @@ def test_capacities_enclose_those_of_a_block_that_slides(case, tmp_path):
         lower, upper = (float(found[f"capacity_{side}"][sample]) for side in ("lower", "upper"))
         assert sliding(lower, friction) <= 0.048 < sliding(upper, friction)
         assert upper - lower == 0.25
-        stood = found["peak"].sel(sample=sample, scale=lower)
+        stood = 0.048 * found["drift_ratio"].sel(sample=sample, scale=lower)
         assert float(stood) == pytest.approx(sliding(lower, friction), abs=1e-3)
         assert np.isnan(found["passed"].sel(sample=sample, scale=slice(upper + 0.1, None))).all()
     assert len(told) == 2
@@ -64,8 +65,26 @@ def test_capacities_enclose_those_of_a_block_that_slides(case, tmp_path):
     assert found.identical(again)  # from the store
 
 
+@pytest.mark.parametrize(("given", "limit"), [(None, 0.1), (0.3, 0.3)])
+def test_a_narrow_block_has_its_own_limit(given, limit, case, make_mapping, tmp_path):
+    """A cube of 1 m and a block of 0.2 m slide as far as each other: the narrow one leaves its place first."""
+    mapping = make_mapping([
+        {"name": "cube", "shape": "cube", "position": [0.0, 0.0, 0.5]},
+        {"name": "narrow", "shape": "narrow", "position": [0.0, 1.5, 0.1]},
+    ])  # fmt: skip
+    mapping["shapes"]["narrow"] = {"box": [0.6, 0.2, 0.2]}
+    (tmp_path / "cube.yaml").write_text(yaml.safe_dump(mapping))
+    ladder = Ladder(first=4.0, increment=1.0, highest=20.0, largest_drift=given)
+    runs = CaseRuns(case, "nscd-rigid", {"time_step": 1e-3}, {})
+    found = climb_samples(runs, pd.DataFrame({PAIR: [0.3]}), ladder, Store(tmp_path / "store", "source", str))
+    lower, upper = float(found["capacity_lower"][0]), float(found["capacity_upper"][0])
+    assert sliding(lower, 0.3) <= limit < sliding(upper, 0.3)
+    expected = [given, given] if given else [0.5, 0.1]
+    np.testing.assert_array_equal(found["largest_drift"].sel(body=["cube", "narrow"]), expected)
+
+
 def rung(scale, passed, status="completed"):
-    return {"scale": scale, "passed": passed, "status": status, "reason": "", "peak": 0.1 * scale}
+    return {"scale": scale, "passed": passed, "status": status, "reason": "", "drift_ratio": 0.1 * scale}
 
 
 def test_shares_count_what_is_known_at_each_level():
@@ -76,7 +95,7 @@ def test_shares_count_what_is_known_at_each_level():
         [rung(1.0, True), rung(2.0, True), rung(3.0, False)],
         [rung(1.0, True), rung(2.0, False, "not-converged")],
     ]
-    climbed = gathered(np.arange(4), climbs, scales, 0.4)
+    climbed = gathered(np.arange(4), climbs, scales, xr.DataArray([0.4], {"body": ["cube"]}))
     np.testing.assert_array_equal(climbed["capacity_lower"], [1.0, 3.0, 2.0, 1.0])
     np.testing.assert_array_equal(climbed["capacity_upper"], [2.0, np.inf, 3.0, np.inf])
     found = fragility(climbed)

@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.special import expit, ndtr
 from scipy.stats import binom, linregress, t
 
+from blockshake.geometry.structure import load_structure
+from blockshake.study.ensembles.drift_limits import drift_limits
 from blockshake.study.fragility.capacity import estimate_capacity
-from blockshake.study.fragility.cloud import Cloud, _tails, fit_cloud, logistic
+from blockshake.study.fragility.cloud import Cloud, _nearest, _tails, fit_cloud, logistic
 
 LIMIT, SLOPE, DEVIATION, MEDIAN = 0.1, 1.6, 0.5, 3.0  # m, 1, 1, m/s2
 REPEATS = 200
@@ -160,3 +163,32 @@ def test_limits_of_stripes_hold_in_95_of_100_cases():
     least = binom.ppf(0.001, REPEATS, 0.95)
     assert held(medians, MEDIAN) >= least
     assert held(dispersions, 0.4) >= least
+
+
+def test_the_demand_is_that_of_the_block_nearest_to_its_own_limit(made_pair):
+    """0.2 m are more to a block of 0.3 m than 0.4 m to one of 1 m."""
+    structure, limits = made_pair, drift_limits(made_pair)
+    np.testing.assert_array_equal(limits, [np.nan, 0.5, 0.15])
+    peak = xr.DataArray(
+        [[[0.0, 0.4, 0.2], [0.0, 0.4, 0.1]]],
+        {"frame": ["slab"], "marker": ["on-slab", "on-wide", "on-narrow"]},
+        ["frame", "sample", "marker"],
+    )
+    demand, limit = _nearest(xr.Dataset({"peak": peak}), structure, limits)
+    np.testing.assert_array_equal(demand, [0.2, 0.4])
+    np.testing.assert_array_equal(limit, [0.15, 0.5])
+
+
+@pytest.fixture
+def made_pair(make_mapping):
+    """A cube of 1 m and a block of 0.3 m side by side, a marker on each."""
+    mapping = make_mapping([
+        {"name": "wide", "shape": "cube", "position": [0.0, 0.0, 0.5]},
+        {"name": "narrow", "shape": "narrow", "position": [0.0, 1.5, 0.5]},
+    ])  # fmt: skip
+    mapping["shapes"]["narrow"] = {"box": [0.5, 0.3, 1.0]}
+    mapping["markers"] = [
+        {"name": f"on-{body}", "body": body, "position": [0.0, 0.0, 0.0]}
+        for body in ("slab", "wide", "narrow")
+    ]
+    return load_structure(mapping)

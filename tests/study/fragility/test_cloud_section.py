@@ -24,12 +24,13 @@ def made_cloud(weight=0.5, measure="sa"):
             "curve_interval": (("fit", "bound", "fine_intensity"), np.full((2, 2, 5), 0.5)),
             "intensity": ("sample", np.tile([1.0, 4.0], 6)),
             "demand": ("sample", np.linspace(0.01, 0.3, 12)),
+            "largest_drift": ("sample", [0.24] * 12),
             "fell": ("sample", [0] * 11 + [1]),
         },
         {"fit": ["regression", "counts"], "bound": ["lower", "upper"], "fine_intensity": fine},
         {
             "measure": measure, "period": 0.5, "levels": 2, "records": 3, "weight": weight, "slope": 1.5,
-            "intercept": -1.0, "largest_drift": 0.24,
+            "intercept": -1.0,
         },
     )  # fmt: skip
 

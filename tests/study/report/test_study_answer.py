@@ -57,7 +57,7 @@ def with_peaks(content, name, model, peaks):
     one = case.responses[model]
     samples = one.samples.copy(deep=True)
     samples["peak"][:] = xr.DataArray(np.asarray(peaks, dtype=float), dims="sample")
-    drift = one.envelope["drift_probability"].attrs["largest_drift"]
+    drift = one.envelope["largest_drift"].to_numpy()
     envelope = one.envelope.drop_dims(["bound", "quantile"]).merge(
         single_figures(samples, drift), compat="override"
     )

@@ -9,11 +9,12 @@ import yaml
 
 from blockshake.diagnosis.nominal.nominal_model import draw_nominal
 from blockshake.errors import InputError
-from blockshake.geometry.reference_block import half_width, reference_block
+from blockshake.geometry.reference_block import reference_block
 from blockshake.geometry.structure import load_structure
 from blockshake.simulation.parameter_table import parameter_table
 from blockshake.simulation.simulate import simulate
 from blockshake.store import Store
+from blockshake.study.ensembles.drift_limits import drift_limits
 from blockshake.study.stiffness.tower import tower_of
 from blockshake.study.stiffness.wave_speed import calibrate_design, calibrate_stiffness, wave_tests
 from blockshake.virtual.truth import true_parameters
@@ -166,18 +167,25 @@ def test_reference_block_is_of_the_heaviest_material_and_its_usual_height(own):
     np.testing.assert_allclose(reference_block(alone).size, [2.4, 1.6, 0.8])
 
 
-def test_half_width_is_of_the_thickness(own):
-    assert half_width(load_structure("configuration-3")) == 0.4
-    assert half_width(load_structure(own("granite", 0.2))) == 0.05
+def test_the_limit_of_drifts_is_half_of_the_thickness(own):
+    np.testing.assert_array_equal(drift_limits(load_structure("configuration-3"))[1:9], 0.4)
+    # the capping block lies across both walls
+    assert drift_limits(load_structure("configuration-3"))[9] == 0.8
+    np.testing.assert_array_equal(drift_limits(load_structure(own("granite", 0.2)))[1:], 0.05)
 
 
 @pytest.mark.parametrize("thin", [1, 2, 3])
-def test_half_width_is_of_the_narrowest_block_in_any_order(own, thin):
+def test_every_block_has_the_limit_of_its_own_width(own, thin):
+    """A slender block among wide ones may slide less than these; a limit that is given holds for all."""
     file = own_file("granite", 1.6)
     file["shapes"]["thin"] = {"box": [0.5, *file["shapes"]["block"]["box"][1:]]}
     file["bodies"][thin]["shape"] = "thin"
     changes = {key: file[key] for key in ("shapes", "bodies")}
-    assert half_width(load_structure(own("granite", 1.6, **changes))) == 0.25
+    structure = load_structure(own("granite", 1.6, **changes))
+    expected = np.full(len(file["bodies"]), 0.4)
+    expected[[0, thin]] = np.nan, 0.25
+    np.testing.assert_array_equal(drift_limits(structure), expected)
+    np.testing.assert_array_equal(drift_limits(structure, 0.1)[1:], 0.1)
 
 
 def test_a_structure_of_driven_bodies_has_no_blocks(own):

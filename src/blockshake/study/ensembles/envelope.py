@@ -5,9 +5,10 @@ import xarray as xr
 
 from blockshake.dynamics.system import FALLEN, FINISHED
 from blockshake.files import history
-from blockshake.geometry.reference_block import half_width
+from blockshake.geometry.structure import load_structure
 from blockshake.simulation.run_histories import JOINT_FIGURES
 from blockshake.statistics.intervals import CONFIDENCE, quantile_interval, sample_quantiles, share_interval
+from blockshake.study.ensembles.drift_limits import drift_limits
 from blockshake.study.ensembles.ensemble import POSES, describe, in_frames, join_batches
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
@@ -46,17 +47,21 @@ def is_moving(envelope, marker):
     return bool(envelope["still_moving"].sel(marker=marker) >= _MOST)
 
 
-def envelope_of_case(batches, largest_drift, structure=None):
+def envelope_of_case(batches, largest_drift, structure):
     """`envelope` of the samples in these files, whose histories are read some markers at a time.
 
-    ``largest_drift``: where it is None, `half_width` of the structure.
+    ``largest_drift``: of `drift_limits` of the ``structure``, which is what `load_structure` takes.
     """
-    largest_drift = largest_drift or half_width(structure)
+    structure = load_structure(structure)
+    markers = structure.file.markers
+    of_markers = drift_limits(structure, largest_drift)[structure.carriers(markers)]
+    limits = {one.name: limit for one, limit in zip(markers, of_markers, strict=True)}
+    ensemble = join_batches(batches, (*POSES, "marker_displacement"))
 
     def displacement(markers):
         return join_batches(batches, POSES, {"marker": markers})["marker_displacement"]
 
-    return envelope(join_batches(batches, (*POSES, "marker_displacement")), largest_drift, displacement)
+    return envelope(ensemble, [limits[str(name)] for name in ensemble["marker"].values], displacement)
 
 
 def envelope(ensemble, largest_drift, displacement=None):
@@ -66,8 +71,8 @@ def envelope(ensemble, largest_drift, displacement=None):
     ----------
     ensemble : xarray.Dataset
         From `join_batches`.
-    largest_drift : float
-        Displacement along x relative to the slab whose exceedance is counted [m].
+    largest_drift : float64 array, shape (n_markers,) or ()
+        Displacement along x relative to the slab whose exceedance is counted [m]; NaN for none.
     displacement : callable, optional
         Gives ``marker_displacement`` of all samples for a list of markers; by default the ensemble's.
 
@@ -80,10 +85,10 @@ def envelope(ensemble, largest_drift, displacement=None):
         `joint_figures` of joints ``(quantile, joint)``;
         ``contributing(time)``: samples with a value at that time; ``still_moving(marker)``: share of those with a
         residual of which `still_moves` holds relative to the slab; ``collapse_probability`` and
-        ``drift_probability(marker)`` [1]. NaN where no sample has a value. The statistics of single numbers have their
-        95 % limits beside them, ``NAME_interval(bound, ...)``, those of quantiles NaN of too few samples
-        (`quantile_ranks`). Attributes ``samples`` and ``counted``: how many runs
-        there were and how many enter.
+        ``drift_probability(marker)`` [1] with its ``largest_drift(marker)`` [m]. NaN where no sample has a value. The
+        statistics of single numbers have their 95 % limits beside them, ``NAME_interval(bound, ...)``, those of
+        quantiles NaN of too few samples (`quantile_ranks`). Attributes ``samples`` and ``counted``: how many runs there
+        were and how many enter.
 
     Notes
     -----
@@ -172,6 +177,7 @@ def _probabilities(counted, failed, largest_drift):
     """Shares of the samples that fell and that drifted too far, with limits for whatever the ``failed`` ones did."""
     fell = np.isin(counted["status"].values, FALLEN)
     peak = counted["peak"].sel(frame="slab", drop=True).transpose("sample", "marker").to_numpy()
+    largest_drift = np.broadcast_to(np.asarray(largest_drift, dtype=float), peak.shape[1])
     counts = np.array([fell.sum(), *(fell[:, None] | (peak > largest_drift)).sum(axis=0)])
     size = len(fell)
     share = counts / size if size else np.full(len(counts), np.nan)
@@ -182,16 +188,17 @@ def _probabilities(counted, failed, largest_drift):
             "collapse_probability_interval": ("bound", limits[:, 0]),
             "drift_probability": ("marker", share[1:]),
             "drift_probability_interval": (("bound", "marker"), limits[:, 1:]),
+            "largest_drift": ("marker", largest_drift),
         }
     )
     what = {
         "collapse": "collapse, or the fall that leads to it as the window ends",
-        "drift": f"a displacement along x of more than {largest_drift:g} m from the slab",
+        "drift": "a displacement along x of more than largest_drift from the slab",
     }
     for name, event in what.items():
         describe(result, {f"{name}_probability": (f"share of the samples with {event}", "1")})
         result[f"{name}_probability"].attrs["ancillary_variables"] = f"{name}_probability_interval"
-    result["drift_probability"].attrs["largest_drift"] = float(largest_drift)
+    describe(result, {"largest_drift": ("displacement that counts as a potential collapse", "m")})
     return result
 
 

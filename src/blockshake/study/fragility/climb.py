@@ -5,16 +5,22 @@ import xarray as xr
 
 from blockshake.dynamics.load_motion import scaled
 from blockshake.dynamics.system import FINISHED, Status
-from blockshake.geometry.reference_block import half_width
+from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import load_structure
+from blockshake.simulation.run_histories import drift_histories
 from blockshake.simulation.simulate import simulate
 from blockshake.store import structure_digest
 from blockshake.study.ensembles.case_input import COMMANDED, driving_motions
+from blockshake.study.ensembles.drift_limits import drift_limits
 from blockshake.study.ensembles.ensemble import describe
 
 _DESCRIBED = {
     "scale": ("factor of the motion", "1"),
-    "peak": ("largest displacement of the mass centre of a block relative to the slab along x", "m"),
+    "drift_ratio": (
+        "largest displacement along x of a mass centre relative to the slab over its largest_drift",
+        "1",
+    ),
+    "largest_drift": ("displacement of a block that counts as a potential collapse", "m"),
     "passed": ("1 where the stack stood, 0 where it did not, NaN where nobody climbed", "1"),
     "capacity_lower": ("last scale that the sample passed, 0 for none", "1"),
     "capacity_upper": ("first scale that it did not pass, infinity for none", "1"),
@@ -38,8 +44,9 @@ def climb_samples(runs, rows, ladder, store, seed=0):
     Returns
     -------
     xarray.Dataset
-        ``peak(sample, scale)`` [m] and ``passed(sample, scale)``; ``capacity_lower`` and ``capacity_upper(sample)``, of
-        the motion's factor [1]; ``status`` and ``reason(sample)`` of the last run. Attribute ``largest_drift`` [m].
+        ``drift_ratio`` and ``passed(sample, scale)``; ``capacity_lower`` and ``capacity_upper(sample)``, of
+        the motion's factor [1]; ``status`` and ``reason(sample)`` of the last run; ``largest_drift(body)`` of
+        `drift_limits` [m].
 
     Notes
     -----
@@ -54,9 +61,10 @@ def climb_samples(runs, rows, ladder, store, seed=0):
         rungs = climb(structure, runs, motions(sample, row), runs.parameters(row, structure), ladder, store)
         climbs.append(rungs)
         store.say(f"{structure.file.name} {runs.model} sample {sample}: {_words(rungs)}")
-    return gathered(
-        rows.index.to_numpy(), climbs, ladder.scales, ladder.largest_drift or half_width(structure)
+    limits = xr.DataArray(
+        drift_limits(structure, ladder.largest_drift), {"body": list(structure.body_names)}, ["body"]
     )
+    return gathered(rows.index.to_numpy(), climbs, ladder.scales, limits)
 
 
 def climb(structure, runs, motion, parameters, ladder, store):
@@ -72,33 +80,33 @@ def climb(structure, runs, motion, parameters, ladder, store):
     parameters : dict
         Parameters of the run by dotted name, as `simulate` takes them.
     ladder : Ladder
-        First scale, increment, highest scale and the drift that counts as a potential collapse: that of `half_width`
-        where it says none.
+        First scale, increment, highest scale and the drift that counts as a potential collapse, of `drift_limits`.
     store : Store
 
     Returns
     -------
     list of dict
-        By rung: ``scale``, ``status``, ``reason`` and ``peak``, the largest displacement of any
-        block relative to the slab along x [m]; and ``passed``. The last rung is the first that did not
-        pass: it did not complete, or a block's drift exceeded ``largest_drift``.
+        By rung: ``scale``, ``status``, ``reason`` and ``drift_ratio``, the largest displacement along x of a block
+        against the slab over its limit [1]; and ``passed``. The last rung is the first that did not pass: it did not
+        complete, or a block's displacement exceeded its limit.
 
     Notes
     -----
     Zhou et al. (2023), section Case Study: first test at 50 %, increments of about 25 %.
     """
-    rungs, largest_drift = [], ladder.largest_drift or half_width(structure)
+    rungs, limits = [], drift_limits(structure, ladder.largest_drift)
     for scale in ladder.scales.tolist():
         outcome = _rung(structure, runs, scaled(motion, scale, motion.name), parameters, store)
-        passed = outcome["status"] == Status.COMPLETED and outcome["peak"] <= largest_drift
-        rungs.append({"scale": scale, **outcome, "passed": passed})
+        ratio = float(np.nanmax(outcome.pop("drift") / limits))
+        passed = outcome["status"] == Status.COMPLETED and ratio <= 1.0
+        rungs.append({"scale": scale, **outcome, "drift_ratio": ratio, "passed": passed})
         if not passed:
             break
     return rungs
 
 
 def _rung(structure, runs, motion, parameters, store):
-    """How one run ended, and the largest drift in it [m]."""
+    """How one run ended, and the largest drift of each body along x in it [m]."""
     time_step, duration = runs.settings["time_step"], runs.case["duration"]
 
     def simulated(checkpoint):
@@ -106,9 +114,10 @@ def _rung(structure, runs, motion, parameters, store):
             structure, motion, runs.model, parameters, time_step=time_step, duration=duration, accelerometers=False,
             checkpoint=checkpoint,
         )  # fmt: skip
-        moved = run["position"].sel(axis="x") - run["position"].sel(axis="x").isel(time=0)
-        drift = np.abs(moved - moved.isel(body=0)).max()
-        return {"status": run.attrs["status"], "reason": run.attrs["reason"], "peak": float(drift)}
+        turns = rotation_matrices(run["orientation"].to_numpy())
+        moved = drift_histories(structure, run["position"].to_numpy(), turns)[..., 0]
+        drift = np.nanmax(np.abs(moved), axis=0).tolist()
+        return {"status": run.attrs["status"], "reason": run.attrs["reason"], "drift": drift}
 
     given = "rung", runs.model, structure_digest(structure), *motion.table, parameters, time_step, duration
     return store.value(given, simulated)
@@ -121,28 +130,30 @@ def _words(rungs):
 
 def gathered(samples, climbs, scales, largest_drift):
     """Dataset of `climb_samples` from the rungs of each sample that `climb` returns."""
-    peak, passed = np.full((2, len(samples), len(scales)), np.nan)
+    ratio, passed = np.full((2, len(samples), len(scales)), np.nan)
     bounds = np.zeros((len(samples), 2))
     for row, rungs in enumerate(climbs):
         known = [rung for rung in rungs if rung["status"] in FINISHED]
         stood = [rung["scale"] for rung in known if rung["passed"]]
         fell = [rung["scale"] for rung in known if not rung["passed"]]
         bounds[row] = max(stood, default=0.0), min(fell, default=np.inf)
-        peak[row, : len(known)] = [rung["peak"] for rung in known]
+        ratio[row, : len(known)] = [rung["drift_ratio"] for rung in known]
         passed[row, : len(known)] = [rung["passed"] for rung in known]
     result = xr.Dataset(
         {
-            "peak": (("sample", "scale"), peak),
+            "drift_ratio": (("sample", "scale"), ratio),
             "passed": (("sample", "scale"), passed),
             "capacity_lower": ("sample", bounds[:, 0]),
             "capacity_upper": ("sample", bounds[:, 1]),
+            "largest_drift": largest_drift,
             "status": ("sample", [str(rungs[-1]["status"]) for rungs in climbs]),
             "reason": ("sample", [str(rungs[-1]["reason"]) for rungs in climbs]),
         },
         coords={"sample": samples.astype(np.int64), "scale": scales},
     )
     describe(result, _DESCRIBED)
+    result["body"].attrs = {"long_name": "name of the body"}
     result["status"].attrs = {"long_name": "how the last run of the sample ended"}
     result["reason"].attrs = {"long_name": "why it ended so"}
-    result.attrs = {"title": "levels of intensity that samples pass", "largest_drift": float(largest_drift)}
+    result.attrs = {"title": "levels of intensity that samples pass"}
     return result

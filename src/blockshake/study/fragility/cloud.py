@@ -11,11 +11,11 @@ from blockshake.dynamics.intensity import motion_figures
 from blockshake.dynamics.load_motion import scaled
 from blockshake.dynamics.record_set import DrawnMotions, Intensity
 from blockshake.dynamics.system import FALLEN
-from blockshake.geometry.reference_block import half_width
 from blockshake.geometry.structure import load_structure
 from blockshake.quantities import FACTOR
 from blockshake.statistics.intervals import CONFIDENCE
 from blockshake.store import load_made
+from blockshake.study.ensembles.drift_limits import drift_limits
 from blockshake.study.ensembles.ensemble import describe
 from blockshake.study.ensembles.envelope import BOUNDS, counted_samples
 from blockshake.study.fragility.capacity import estimate_capacity
@@ -33,11 +33,19 @@ _DESCRIBED = {
     "safe": "intensity at which 5 % of the samples do not pass",
     "dispersion": "standard deviation of the logarithm of the intensity at which a sample does not pass",
     "curve": "probability of not passing",
-    "demand": "largest displacement of a marker along x relative to the slab",
+    "demand": "largest displacement along x relative to the slab, of the marker that comes nearest to its limit",
+    "largest_drift": "displacement of that marker that counts as not passing",
     "peak_acceleration": "peak ground acceleration along x of the motion of the sample",
     "fell": "1 where the sample collapsed, or still fell as the window ended",
 }
-_UNITS = {"dispersion": "1", "curve": "1", "demand": "m", "peak_acceleration": "m/s2", "fell": "1"}
+_UNITS = {
+    "dispersion": "1",
+    "curve": "1",
+    "demand": "m",
+    "largest_drift": "m",
+    "peak_acceleration": "m/s2",
+    "fell": "1",
+}
 
 
 class Cloud(NamedTuple):
@@ -94,7 +102,7 @@ def fit_cloud(intensity, demand, fell, limit, weight=1.0):
     demand : float64 array, shape (n_samples,)
         That of samples that fell, or stay within a tenth of a millimetre, is not used [m].
     fell : bool array, shape (n_samples,)
-    limit : float
+    limit : float64 array, shape (n_samples,) or ()
         Demand that counts as not passing [m].
     weight : float
         Share of the samples that are independent of each other [1]: of samples that come m times, 1 / m.
@@ -115,7 +123,7 @@ def fit_cloud(intensity, demand, fell, limit, weight=1.0):
     """
     log, fell = np.log(intensity), np.asarray(fell, dtype=bool)
     used = ~fell & (demand > _STILL)
-    x, y = log[used], np.log(demand[used] / limit)
+    x, y = log[used], np.log((demand / limit)[used])
     size, middle = weight * len(x), float(np.mean(log)) if len(log) else np.nan
     squares, freedom = weight * float(((x - x.mean()) ** 2).sum()) if len(x) else 0.0, size - 2.0
     if freedom < 1.0 or squares == 0.0:
@@ -176,17 +184,18 @@ def cloud_of_case(samples, case, seed, largest_drift):
     seed : int
         Of the design.
     largest_drift : float or None
-        Demand that counts as not passing [m]; `half_width` of the structure where it is None.
+        Of `drift_limits`.
 
     Returns
     -------
     xarray.Dataset
-        By counted ``sample``: ``record``, ``intensity``, ``peak_acceleration`` [m/s2], ``demand`` [m], ``fell``. By
+        By counted ``sample``: ``record``, ``intensity``, ``peak_acceleration`` [m/s2], ``demand`` and
+        ``largest_drift`` [m] of the marker that comes nearest to the limit of its block, ``fell``. By
         ``fit``: ``median``, ``dispersion``, ``safe``, each with its ``_interval(fit, bound)``, and
         ``curve(fit, fine_intensity)`` with its limits; NaN where the samples do not tell. ``regression`` is
         `fit_cloud`; ``counts`` the lognormal curve of largest likelihood of passing and not passing, Eq. (11) of Baker
         (2015), Earthquake Spectra 31. Attributes: ``measure``, ``period``, number of ``levels`` and of ``records``,
-        ``weight`` of a sample in the limits, ``largest_drift``, and ``slope`` and ``intercept`` of the `Cloud`.
+        ``weight`` of a sample in the limits, and ``slope`` and ``intercept`` of the `Cloud`.
 
     Notes
     -----
@@ -195,13 +204,18 @@ def cloud_of_case(samples, case, seed, largest_drift):
     together as one in all limits, since records differ by more than the sampled variables do.
     """
     counted = counted_samples(load_made(samples))
-    limit = largest_drift or half_width(load_structure(case["structure"]))
+    structure = load_structure(case["structure"])
     shaken = shaken_by(counted, case, seed)
-    demand = counted["peak"].sel(frame="slab", drop=True).max("marker").to_numpy()
+    demand, limit = _nearest(counted, structure, drift_limits(structure, largest_drift))
     fell = np.isin(counted["status"].values, FALLEN)
     result, cloud = fragilities(shaken, demand, fell, limit)
     peaks = [motion_figures(motion)["peak_acceleration"] for motion in shaken.motions]
-    by_sample = {"intensity": shaken.intensity, "peak_acceleration": peaks, "demand": demand}
+    by_sample = {
+        "intensity": shaken.intensity,
+        "peak_acceleration": peaks,
+        "demand": demand,
+        "largest_drift": limit,
+    }
     for name, values in (by_sample | {"fell": fell.astype(int)}).items():
         result[name] = "sample", values
     record = ("sample", [one.name for one in shaken.records], {"long_name": "motion of the sample"})
@@ -217,10 +231,20 @@ def cloud_of_case(samples, case, seed, largest_drift):
         "weight": shaken.weight,
         "slope": float(cloud.slope),
         "intercept": float(cloud.intercept),
-        "largest_drift": float(limit),
         "confidence": CONFIDENCE,
     }
     return result
+
+
+def _nearest(counted, structure, limits):
+    """Largest displacement along x of each sample and its limit, float64 (n_samples,) [m], of the marker whose
+    displacement is the largest share of the limit of its block; ``limits``: by body."""
+    markers = [one for one in structure.file.markers if not structure.driven[structure.carriers([one])[0]]]
+    peak = counted["peak"].sel(frame="slab", marker=[one.name for one in markers], drop=True)
+    peak = peak.transpose("sample", "marker").to_numpy()
+    limit = np.broadcast_to(limits[structure.carriers(markers)], peak.shape)
+    nearest = np.arange(len(peak)), np.argmax(np.nan_to_num(peak / limit), axis=1)
+    return peak[nearest], limit[nearest]
 
 
 class Shaken(NamedTuple):
@@ -259,7 +283,7 @@ def fragilities(shaken, demand, fell, limit):
         In the unit of ``limit``.
     fell : bool array, shape (n_samples,)
         Samples that do not pass whatever their demand.
-    limit : float
+    limit : float64 array, shape (n_samples,) or ()
         Demand that counts as not passing.
 
     Returns

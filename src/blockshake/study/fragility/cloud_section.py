@@ -1,12 +1,14 @@
 """Blocks of the section on the fragility that tell of samples which draw their motions."""
 
+import numpy as np
+
 from blockshake.pages.blocks import Figure, Heading, Table, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.wording import (
     MISSING,
     count_words,
     limited,
-    millimetres,
+    millimetre_range,
     model_label,
     percent,
 )
@@ -26,17 +28,17 @@ def cloud_blocks(content):
     }
     if not clouds:
         return []
-    limits = " or ".join(sorted({millimetres(one.attrs["largest_drift"]) for one in clouds.values()}))
+    limits = millimetre_range(np.hstack([one["largest_drift"] for one in clouds.values()]))
     words = (
-        "Every sample is shaken once, by a motion of its own. It does not pass when it collapses, still falls as "
-        f"its window ends, or a marker moves along x by more than {limits} mm from the slab. The cloud is the "
-        "regression of the logarithm of that displacement on the logarithm of the intensity, over the samples that "
-        "stand and move, with a logistic regression of the falls (Jalayer and Cornell 2009). The counts are fitted "
-        "by the lognormal curve of largest likelihood (Baker 2015, Eq. 11). The regression needs no sample that "
-        "fails, and rests on its straight line; the counts need both outcomes, and rest on no displacement. The "
-        "dispersion is the standard deviation of the logarithm of the intensity at which a sample fails, for the "
-        "regression half the logarithm of the ratio of its 84 and 16 % intensities. It holds the scatter from "
-        "motion to motion and that of the sampled variables."
+        "Every sample is shaken once, by a motion of its own. It does not pass when it collapses, still falls as its "
+        f"window ends, or a marker moves along x from the slab by more than the limit of its block, {limits} mm. The "
+        "cloud is the regression of the logarithm of that displacement on the logarithm of the intensity, over the "
+        "samples that stand and move, with a logistic regression of the falls (Jalayer and Cornell 2009). The counts "
+        "are fitted by the lognormal curve of largest likelihood (Baker 2015, Eq. 11). The regression needs no "
+        "sample that fails, and rests on its straight line; the counts need both outcomes, and rest on no "
+        "displacement. The dispersion is the standard deviation of the logarithm of the intensity at which a sample "
+        "fails, for the regression half the logarithm of the ratio of its 84 and 16 % intensities. It holds the "
+        "scatter from motion to motion and that of the sampled variables."
     )
     if any(one.attrs["weight"] < 1.0 for one in clouds.values()):
         words += (
@@ -47,7 +49,8 @@ def cloud_blocks(content):
         Heading("Motions that the samples draw", "clouds"),
         Text(words),
         Figure(
-            "Left: largest displacement of a marker from the slab over the intensity, and the regression; crosses: "
+            "Left: largest displacement of a marker from the slab, as a share of its limit, over the intensity, and "
+            "the regression; crosses: "
             "samples that fell, at the upper edge. Right: probability of not passing by both methods, with limits of "
             "95 %; squares: share of the samples at a level that do not pass, with limits of Clopper and Pearson. "
             f"Dotted: {percent(SAFE)} %.",

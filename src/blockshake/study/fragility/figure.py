@@ -17,7 +17,7 @@ def plot_fragility(results):
     """Figure of fragilities, a row a case.
 
     ``results``: from `fragility`, by case. Left: quantiles of the largest displacement of the samples that climbed a
-    scale, and the displacement that counts as a potential collapse, up to twice of it. Right: share that did not pass
+    scale, over the limit of its block, up to twice of it. Right: share that did not pass
     with its limits, and the lognormal curve with its band.
     """
     figure = new_figure(_ROW * len(results) + 0.012)
@@ -25,7 +25,7 @@ def plot_fragility(results):
     for (left, right), (case, result) in zip(rows, results.items(), strict=True):
         _draw_peaks(left, result)
         _draw_probability(right, result)
-        left.set(title=case, ylabel="displacement [mm]")
+        left.set(title=case, ylabel="displacement / limit [1]")
         right.set(title=case, ylabel="probability")
     for axes in rows[-1]:
         axes.set_xlabel("factor of the motion [1]")
@@ -40,12 +40,12 @@ def plot_fragility(results):
 
 
 def _draw_peaks(axes, result):
-    low, median, high = (1e3 * result["peak"].sel(quantile=q).to_numpy() for q in SHOWN_QUANTILES)
+    low, median, high = (result["drift_ratio"].sel(quantile=q).to_numpy() for q in SHOWN_QUANTILES)
     scale = result["scale"].to_numpy()
     axes.vlines(scale, low, high, color=BLUE, linewidth=1.2)
     axes.plot(scale, median, color=BLUE, marker="o", markersize=3.5, linewidth=0.6)
-    axes.axhline(1e3 * result.attrs["largest_drift"], color=RED, linestyle="--", linewidth=0.8)
-    axes.set_ylim(0.0, 2e3 * result.attrs["largest_drift"])
+    axes.axhline(1.0, color=RED, linestyle="--", linewidth=0.8)
+    axes.set_ylim(0.0, 2.0)
 
 
 def _draw_probability(axes, result):
@@ -71,7 +71,7 @@ def measure_words(cloud):
 
 def failed(cloud):
     """Which samples of a cloud did not pass, bool array."""
-    return ((cloud["fell"] == 1) | (cloud["demand"] > cloud.attrs["largest_drift"])).to_numpy()
+    return ((cloud["fell"] == 1) | (cloud["demand"] > cloud["largest_drift"])).to_numpy()
 
 
 def plot_clouds(clouds):
@@ -83,15 +83,15 @@ def plot_clouds(clouds):
     rows = figure.subplots(len(clouds), 2, squeeze=False)
     colours = {"regression": BLUE, "counts": RED}
     for (left, right), (title, cloud) in zip(rows, clouds.items(), strict=True):
-        fine, limit = cloud["fine_intensity"], 1e3 * cloud.attrs["largest_drift"]
+        fine = cloud["fine_intensity"]
         stands = cloud["fell"].to_numpy() == 0
-        at, demand = cloud["intensity"].to_numpy(), 1e3 * cloud["demand"].to_numpy()
+        at, demand = cloud["intensity"].to_numpy(), (cloud["demand"] / cloud["largest_drift"]).to_numpy()
         left.plot(at[stands], demand[stands], color=BLACK, linestyle="none", marker="o", markersize=3.0)
-        left.plot(fine, limit * np.exp(cloud.attrs["intercept"]) * fine ** cloud.attrs["slope"], color=BLUE)
-        top = 2.0 * max(limit, *demand[stands]) if stands.any() else 2.0 * limit
+        left.plot(fine, np.exp(cloud.attrs["intercept"]) * fine ** cloud.attrs["slope"], color=BLUE)
+        top = 2.0 * max(1.0, *demand[stands]) if stands.any() else 2.0
         left.plot(at[~stands], np.full((~stands).sum(), top), color=RED, linestyle="none", marker="x")
-        left.axhline(limit, color=RED, linestyle="--", linewidth=0.8)
-        left.set(title=title, xscale="log", yscale="log", ylabel="displacement [mm]")
+        left.axhline(1.0, color=RED, linestyle="--", linewidth=0.8)
+        left.set(title=title, xscale="log", yscale="log", ylabel="displacement / limit [1]")
         left.xaxis.set_major_formatter("{x:g}")
         left.xaxis.set_minor_formatter("{x:g}")
         for method, colour in colours.items():

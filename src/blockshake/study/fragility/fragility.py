@@ -21,7 +21,10 @@ ESTIMATES = {
 _DESCRIBED = {
     "known": ("samples of which it is known whether they pass this scale", "1"),
     "share": ("share of these that do not pass it, or did not pass a lower one", "1"),
-    "peak": ("largest displacement of the mass centre of a block from the slab, samples that climbed", "m"),
+    "drift_ratio": (
+        "largest displacement of a block from the slab over its limit, samples that climbed",
+        "1",
+    ),
     "fine_scale": ("factor of the motion", "1"),
     "curve": ("probability of a capacity below that factor, lognormal", "1"),
     "median": ("median capacity, factor of the motion", "1"),
@@ -48,10 +51,11 @@ def fragility(climbed):
     Returns
     -------
     xarray.Dataset
-        ``climbed``'s variables but ``peak``, and: ``known(scale)``; ``share(scale)`` with
-        ``share_interval(bound, scale)``; ``peak(quantile, scale)`` [m]; ``median``, ``dispersion`` and ``safe_scale``,
-        the factor that 5 % of the capacities are below, each with its ``_interval(bound)``; ``curve(fine_scale)`` with
-        ``curve_interval(bound, fine_scale)``. NaN where the samples bound the capacity on one side alone.
+        ``climbed``'s variables but ``drift_ratio``, and: ``known(scale)``; ``share(scale)`` with
+        ``share_interval(bound, scale)``; ``drift_ratio(quantile, scale)``; ``median``, ``dispersion`` and
+        ``safe_scale``, the factor that 5 % of the capacities are below, each with its ``_interval(bound)``;
+        ``curve(fine_scale)`` with ``curve_interval(bound, fine_scale)``. NaN where the samples bound the capacity on
+        one side alone.
 
     Notes
     -----
@@ -68,11 +72,11 @@ def fragility(climbed):
     limits = np.array([share_interval(*map(int, one)) for one in numbers])
     fine = np.linspace(scales[0], scales[-1], POINTS)
     fitted, likely, limits_over = estimate_capacity(lower, upper)
-    result = climbed.drop_vars("peak").assign(
+    result = climbed.drop_vars("drift_ratio").assign(
         known=("scale", known),
         share=("scale", np.divide(failed, known, out=np.full(len(scales), np.nan), where=known > 0)),
         share_interval=(("bound", "scale"), limits.T),
-        peak=over_samples(climbed["peak"], xr.DataArray(list(QUANTILES), dims="quantile")),
+        drift_ratio=over_samples(climbed["drift_ratio"], xr.DataArray(list(QUANTILES), dims="quantile")),
     )
     for name, of in ESTIMATES.items():
         dims = ("fine_scale",) if name == "curve" else ()

@@ -9,7 +9,7 @@ from blockshake.pages.wording import (
     count_words,
     given,
     limited,
-    millimetres,
+    millimetre_range,
     model_label,
     number,
     percent,
@@ -31,20 +31,17 @@ def fragility(content):
 def _climbs(content):
     """Blocks on the samples that climb."""
     asked = content.study["fragility"]
-    limits = " or ".join(
-        sorted({millimetres(result.attrs["largest_drift"]) for result in content.fragility.values()})
-    )
+    limits = millimetre_range(np.hstack([one["largest_drift"] for one in content.fragility.values()]))
     one = any(content.cases[name].settings.get("intensity") is None for name in content.fragility)
     return [
         Text(
             f"Samples that climb the ladder by {model_label(asked['model'])}: each is shaken by the case's commanded "
             "motion at rising factors, from the restored stack each time, until it collapses, still falls as its "
-            f"window ends, or the mass centre of a block moves from the slab by more than {limits} mm, which counts as "
-            "a potential collapse. The capacity of a sample lies between the last factor that it passed and the first "
-            "that it did not. Where these tell "
-            "one, the figure has the lognormal distribution of largest likelihood for such bounds (incremental dynamic "
-            "analysis, Vamvatsikos and Cornell 2002; fragility by maximum likelihood, Shinozuka et al. 2000). The "
-            "spread is that of the sampled variables"
+            f"window ends, or the mass centre of a block moves from the slab by more than its limit, {limits} mm, "
+            "which counts as a potential collapse. The capacity of a sample lies between the last factor that it "
+            "passed and the first that it did not. Where these tell one, the figure has the lognormal distribution "
+            "of largest likelihood for such bounds (incremental dynamic analysis, Vamvatsikos and Cornell 2002; "
+            "fragility by maximum likelihood, Shinozuka et al. 2000). The spread is that of the sampled variables"
             + (
                 ". The motion is one: another motion of the same peak has another fragility."
                 if one
@@ -53,8 +50,8 @@ def _climbs(content):
         ),
         Items(tuple(words(content, name) for name in content.fragility)),
         Figure(
-            "Largest displacement of the mass centre of any block from the slab, up to twice the one that counts as a "
-            "potential collapse, and probability of such a collapse, by the factor of the motion. Its limits of 95 % "
+            "Largest displacement of the mass centre of a block from the slab over the limit of that block, up to "
+            "twice of it, and probability of a potential collapse, by the factor of the motion. Its limits of 95 % "
             "are those of Clopper and Pearson, and hold either outcome of samples whose run ended for a numerical "
             f"reason. Dotted: {percent(SAFE)} %. The numbers of every level are in "
             f"results/{content.study['name']}/fragility.",

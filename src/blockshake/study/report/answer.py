@@ -4,7 +4,15 @@ import numpy as np
 
 from blockshake.pages.blocks import Box, Figure, Heading, Items, Section, Table, Text
 from blockshake.pages.drawing import svg_of
-from blockshake.pages.wording import MISSING, SQUARED, given, model_label, number, parameter_label
+from blockshake.pages.wording import (
+    MISSING,
+    SQUARED,
+    given,
+    millimetre_range,
+    model_label,
+    number,
+    parameter_label,
+)
 from blockshake.pages.words import Words, length, span, whole_percent
 from blockshake.simulation.models import solver_of
 from blockshake.statistics.intervals import SURE_FROM
@@ -252,7 +260,7 @@ def _measured(content, found):
 def _intensities(content):
     """Intensities at which half of the samples reach a potential collapse, and what the motion explains."""
     ladders = [
-        (name, one.attrs["largest_drift"], float(one["median"]))
+        (name, millimetre_range(one["largest_drift"]), float(one["median"]))
         for name, one in content.fragility.items()
         if np.isfinite(one["median"])
     ]

@@ -45,7 +45,7 @@ class Response:
         """The samples of one level, and their statistics without histories; ``levels``: by sample."""
         here = np.array([levels[int(sample)] == level for sample in self.samples["sample"].values])
         samples = self.samples.isel(sample=np.flatnonzero(here))
-        drift = self.envelope["drift_probability"].attrs["largest_drift"]
+        drift = self.envelope["largest_drift"].to_numpy()
         # whether a block still moves is known of all levels together alone
         envelope = single_figures(samples, drift).assign(still_moving=self.envelope["still_moving"])
         limits = self.limits

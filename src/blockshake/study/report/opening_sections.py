@@ -16,6 +16,7 @@ from blockshake.pages.wording import (
     count_words,
     given,
     limited,
+    millimetre_range,
     millimetres,
     model_label,
     number,
@@ -94,18 +95,20 @@ def probability_table(content):
                 *(_bounded(top.sel(frame="slab", quantile=q), "peak", _thousandths) for q in _SHOWN),
                 *(_bounded(top.sel(quantile=q), "peak_rotation", _thousandths) for q in _SHOWN),
             ))  # fmt: skip
-    limit = next(iter(next(iter(content.cases.values())).responses.values())).envelope["drift_probability"]
+    limits = np.hstack(
+        [one.envelope["largest_drift"] for case in content.stripes for one in case.responses.values()]
+    )
     shown = " and ".join(f"{100 * one:.0f} %" for one in _SHOWN)
     quantiles = [f"{100 * one:.0f} %" for one in _SHOWN]
     return Table(
         "Top block of every leaf, at its marker: probability of collapse, and of a displacement relative to the slab "
-        "of more than "
-        f"{number(1e3 * limit.attrs['largest_drift'])} mm, with Clopper-Pearson limits; quantiles {shown} of peak "
-        "displacement [mm] and peak rotation [mrad] over the n samples that did not fail, with limits by order "
-        f"statistics. {MISSING.capitalize()}: of a quantile for which n is too small to bear limits ({needed}). All "
-        f"limits are of {100 * CONFIDENCE:.0f} % and take samples as independent. A sample that collapsed, or still "
-        "fell when the window ended, counts as a collapse and as more than that drift, and with the peak that it had "
-        "reached. One that failed counts in none of these; the limits of probabilities hold that all of these fell and "
+        f"of more than the limit of its block, {millimetre_range(limits)} mm, with Clopper-Pearson limits; quantiles "
+        f"{shown} of peak displacement [mm] and peak rotation [mrad] over the n samples that did not fail, with "
+        f"limits by order statistics. {MISSING.capitalize()}: of a quantile for which n is too small to bear limits "
+        f"({needed}). All limits are of {100 * CONFIDENCE:.0f} % and take samples as independent. A sample that "
+        "collapsed, or still fell when the window ended, counts as a collapse and as more than that drift, and with "
+        "the peak that it had reached. One that failed counts in none of these; the limits of probabilities hold "
+        "that all of these fell and "
         "that none did.",
         (
             "Case, marker", "Model", "n", "Collapse [%]", "Drift [%]", *(f"Peak, {one} [mm]" for one in quantiles),

@@ -150,7 +150,7 @@ def explained_by_motion(case):
         cloud = one.cloud
         if cloud is None or not case.levels:
             continue
-        demand = np.log(np.maximum(cloud["demand"].to_numpy(), STILL))
+        demand = np.log(np.maximum(cloud["demand"].to_numpy(), STILL) / cloud["largest_drift"].to_numpy())
         groups = [
             cloud["record"].values.astype(str),
             np.array([case.levels[int(sample)] for sample in cloud["sample"].values]),
