@@ -58,7 +58,7 @@ DIAGNOSED = DOCS.parent / "data" / "virtual-campaign" / "configuration-2"
 PROFILE = DOCS.parent / "profiles" / "slurm" / "profile.yaml"
 DONE = Path("reports/study.html")
 _CORES = (1, 64, 1024)
-_MOST_OF_A_FINDING = 330  # characters on the page
+_MOST_OF_A_FINDING = 160  # characters on the page
 _SHOWN = 8  # rules that take most of the time
 
 
@@ -117,10 +117,8 @@ def statements(study):
     content = content_of(study)
     if content is None:
         return None
-    found, prices = judge_statements(content), other_settings_table(content)
+    found = judge_statements(content)
     lines = _study_words(content, count_words(found))
-    if prices:
-        lines += ["", "### Settings as printed", "", markdown(prices.header, prices.rows)]
     for heading, rows in found.items():
         short = [(*row[:-1], _shortened(row[-1])) for row in rows]
         lines += ["", f"### {heading}", "", markdown(HEADER, short)]
@@ -128,7 +126,7 @@ def statements(study):
 
 
 def _shortened(words):
-    """A finding, cut after its last sentence or item within 330 characters."""
+    """A finding, cut after its last sentence or item within 160 characters."""
     if len(words) <= _MOST_OF_A_FINDING:
         return words
     kept = words[:_MOST_OF_A_FINDING]
@@ -152,12 +150,20 @@ def _study_words(content, *more):
 
 
 def printed_settings():
-    """Prices of the printed settings, each alone and all together; None where their study has not been run."""
+    """Effects of the printed settings beyond their limits; None where their study has not been run."""
     content = content_of("literal")
     if content is None:
         return None
     prices = other_settings_table(content)
-    return "\n".join([*_study_words(content), "", markdown(prices.header, prices.rows)])
+    rows = [row for row in prices.rows if any(_changes(cell) for cell in row)]
+    words = f"The table has {len(rows)} of {len(prices.rows)} comparisons: in the others no change is beyond its limits."
+    return "\n".join([*_study_words(content, words), "", markdown(prices.header, rows)])
+
+
+def _changes(cell):
+    """Whether a cell is a change whose limits do not hold zero."""
+    limits = re.search(r"\[(-?[\d.]+), (-?[\d.]+)\]", cell)
+    return bool(limits) and (float(limits[1]) > 0.0 or float(limits[2]) < 0.0)
 
 
 def arrival_definitions():
