@@ -2,7 +2,7 @@
 
 Both move the same blocks; what differs is the contact: springs and dashpots against Signorini's condition. As the
 springs stiffen, what they store and how long an impact lasts go to zero with the square root of the stiffness. The
-impacts of a stack do not become those of NSCD: docs/theory/nscd.md, *Beside LS-DEM*.
+impacts of a stack do not become those of NSCD: docs/theory/nscd.md, *Comparison with LS-DEM*.
 """
 
 import numpy as np
