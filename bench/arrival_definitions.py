@@ -15,7 +15,6 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.system import Status
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.markers import block_markers, driven_marker
-from blockshake.pages.units import printed
 from blockshake.pages.wording import given, millimetres, number, percent
 from blockshake.simulation.simulate import simulate
 from blockshake.solvers.ls_dem.parameters import LsDemParameters, own_stiffness
@@ -32,11 +31,6 @@ NOMINAL = "50 %", 0.5  # definition and restitution of a study
 # the first case of config/study.yaml
 STRUCTURE, MOTION, SCALE = "configuration-1", "basso-tirreno", 2.0
 TIME_STEP, DURATION = 1e-4, 6.0  # s, the first strong swings
-_STIFFNESS = printed("N/m3")
-HEADER = (
-    "C_res", "Arrival", f"k_n [{_STIFFNESS.name}]", f"k_s [{_STIFFNESS.name}]", "Speed read, vertical [m/s]",
-    "Speed read, horizontal [m/s]", "Peak, this C_res [mm]", "Peak, C_res of the study [mm]",
-)  # fmt: skip
 
 
 def travel_time(times, velocity, definition):
@@ -205,18 +199,3 @@ def arrival_words(found, peaks):
 def _range(values):
     """Smallest and largest of the values that there are."""
     return f"{float(values.min()):.2f} to {float(values.max()):.2f}"
-
-
-def arrival_rows(found, peaks):
-    """Rows of the page's table, by restitution and definition."""
-    rows = []
-    for row, restitution in enumerate(RESTITUTIONS):
-        for column, definition in enumerate(DEFINITIONS):
-            at = found.sel(restitution=restitution, definition=definition)
-            rows.append((
-                given(restitution), definition,
-                *(number(_STIFFNESS.factor * at["stiffness"].sel(direction=one)) for one in AXES),
-                *(number(at["wave_speed"].sel(direction=one), 4) for one in AXES),
-                *map(millimetres, peaks[:, row, column]),
-            ))  # fmt: skip
-    return rows

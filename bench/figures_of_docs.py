@@ -11,8 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from arrival_definitions import HEADER as ARRIVAL_HEADER
-from arrival_definitions import arrival_rows, arrival_words, stiffness_by_definition, top_peaks
+from arrival_definitions import arrival_words, stiffness_by_definition, top_peaks
 from convergence import HEADER as CONVERGENCE_HEADER
 from convergence import convergence_rows
 from face_impacts import THEORY_HEADER, face_impacts, replayed, theory_rows
@@ -30,13 +29,12 @@ from blockshake.files import load_json, load_yaml, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.pages.wording import given, model_label, number
 from blockshake.simulation.simulate import simulate
-from blockshake.study.calibration.section import answers_table, tests_table
+from blockshake.study.calibration.section import answers_table
 from blockshake.study.comparison.tables import other_settings_table
 from blockshake.study.config import load_config
 from blockshake.study.report.content import load_content
 from blockshake.study.sampling.distributions import LINKED, TABLE_2
 from blockshake.study.sampling.sample_parameters import sample_parameters
-from blockshake.study.sensitivity.findings import markers_by_height, sentence
 from blockshake.study.stiffness.wave_speed import calibrate_stiffness, stiffness_parameters
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -156,7 +154,8 @@ def printed_settings():
         return None
     prices = other_settings_table(content)
     rows = [row for row in prices.rows if any(_changes(cell) for cell in row)]
-    words = f"The table has {len(rows)} of {len(prices.rows)} comparisons: in the others no change is beyond its limits."
+    count = f"{len(rows)} of {len(prices.rows)}"
+    words = f"The table has {count} comparisons: in the others no change is beyond its limits."
     return "\n".join([*_study_words(content, words), "", markdown(prices.header, rows)])
 
 
@@ -167,10 +166,9 @@ def _changes(cell):
 
 
 def arrival_definitions():
-    """Stiffness by the definition of a wave's arrival and by damping, with the peaks of a stack."""
+    """Sentences on the stiffness by the definition of a wave's arrival and by damping, and on the peaks of a stack."""
     found = stiffness_by_definition(load_structure("configuration-1"))
-    peaks = top_peaks(found)
-    return f"{arrival_words(found, peaks)}\n\n{markdown(ARRIVAL_HEADER, arrival_rows(found, peaks))}"
+    return arrival_words(found, top_peaks(found))
 
 
 def cost_of_samples():
@@ -217,31 +215,14 @@ def joint_calibration():
     path = Path("results", "study", "calibration.json")
     if not path.is_file():
         return None
-    found = load_json(path)
-    tables = answers_table(found), tests_table(found)
-    return "\n\n".join(markdown(table.header, table.rows) for table in tables)
+    table = answers_table(load_json(path))
+    return markdown(table.header, table.rows)
 
 
 def shear_damping():
     """Table of twins by the damping of the shear springs, and how often it keeps them together."""
     rows = shear_damping_rows()
     return f"{markdown(SHEAR_HEADER, rows)}\n\n{shear_damping_words(rows)}"
-
-
-def study_sensitivities():
-    """Sentences of the default study's report on what makes its envelopes thick; None where it has not been run."""
-    content = content_of("study")
-    if content is None:
-        return None
-    lines = []
-    for case in content.cases.values():
-        chosen = markers_by_height(case)
-        body, marker = list(chosen.items())[-1]
-        for model, response in case.responses.items():
-            words = sentence(response.sensitivity, body, marker, case.marker_noise)
-            told = f"- **{case.name}, {model_label(model)}:** {words}"
-            lines += textwrap.wrap(told, 100, subsequent_indent="  ", break_on_hyphens=False)
-    return "\n".join(lines)
 
 
 def study_shares():
@@ -302,7 +283,6 @@ MAKERS = {
     "face-impact-theory": lambda: markdown(THEORY_HEADER, theory_rows()),
     "face-impacts": lambda: _items(face_impacts()[1]),
     "face-impacts-of-films": faces_of_films,
-    "study-sensitivities": study_sensitivities,
     "study-shares": study_shares,
     "arrival-definitions": arrival_definitions,
     "cost-of-samples": cost_of_samples,
