@@ -3,13 +3,16 @@
 from pathlib import Path
 from typing import Literal, assert_type
 
+import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
 import blockshake
+from blockshake.diagnosis.planning.plan_campaign import CampaignPlan
 from blockshake.diagnosis.verdict.verdict import Verdict
 from blockshake.dynamics.motion import GroundMotion
 from blockshake.geometry.structure import Structure
+from blockshake.measurement.campaigns.campaign import Campaign
 
 
 def calls(folder: Path) -> None:
@@ -28,5 +31,14 @@ def calls(folder: Path) -> None:
     assert_type(role, Literal["fit", "select", "sealed"])
     verdict = assert_type(blockshake.diagnose(folder, folder / "out", cores=2), Verdict)
     assert_type(verdict.causes, tuple[str, ...])
-    blockshake.simulate(structure, motion, modle="ls-dem")  # type: ignore[call-arg]
+    runs = blockshake.simulate(structure, motion, models=["ls-dem", "nscd-rigid"], scale=1.5)
+    assert_type(runs, dict[str, xr.Dataset])
+    assert_type(blockshake.largest_responses(run), pd.DataFrame)
+    assert_type(blockshake.motion_figures(motion), dict[str, float])
+    assert_type(blockshake.convert_motion(folder / "a.at2", "motion.csv", unit="g"), GroundMotion)
+    assert_type(blockshake.import_campaign({"name": "mine"}, folder), Campaign)
+    assert_type(blockshake.plan_campaign("my.yaml", ["alkion@2.5"], folder), CampaignPlan)
+    assert_type(blockshake.run_study("study.yaml", cores=1), list[Path])
+    assert_type(blockshake.extend_study("verdict.json", "study.yaml", "out.yaml"), list[str])
+    blockshake.simulate(structure, motion, modle="ls-dem")  # type: ignore[call-overload]
     raise blockshake.InputError("file.yaml", "key", "expected this")

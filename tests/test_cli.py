@@ -43,6 +43,19 @@ def test_simulate_writes_a_run_file(tmp_path, capsys):
     assert found[1] == f"{farthest:.3g}"
 
 
+def test_several_models_at_once(tmp_path, capsys):
+    models = ("ls-dem", "nscd-rigid")
+    asked = ["simulate", "--structure", "configuration-1", "--motion", "alkion", "--duration", "0.1"]
+    asked += [word for model in models for word in ("--model", model)]
+    assert main([*asked, "--output", str(tmp_path / "run.nc")]) == 0
+    files = [tmp_path / f"run-{model}.nc" for model in models]
+    assert sorted(tmp_path.iterdir()) == sorted(files)
+    assert [xr.load_dataset(file).attrs["model"] for file in files] == list(models)
+    assert [line.partition(":")[0] for line in capsys.readouterr().out.splitlines()] == list(map(str, files))
+    assert main([*asked, "--model", "dem", "--output", str(tmp_path / "other.nc")]) == 2
+    assert sorted(tmp_path.iterdir()) == sorted(files)
+
+
 def test_sample_and_its_table(tmp_path):
     output = tmp_path / "design.csv"
     assert main(["sample", "--size", "12", "--seed", "3", "--output", str(output)]) == 0

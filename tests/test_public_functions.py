@@ -124,6 +124,61 @@ def test_a_run_and_its_file_give_the_same_tables(leaning_run, leaning_file, tmp_
     assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
 
 
+def test_the_largest_responses_of_a_run_are_those_of_its_histories(leaning_run):
+    run, structure = leaning_run
+    largest, histories = blockshake.largest_responses(run), run_histories(run, structure)
+    assert largest.index.tolist() == ["lower", "upper"]
+    for body, joint in (("lower", "slab-lower"), ("upper", "lower-upper")):
+        drift = np.hypot(*histories["drift"].sel(body=body, axis=["x", "y"]).to_numpy().T)
+        assert largest.loc[body, "drift"] == pytest.approx(drift.max(), abs=1e-12)
+        for name in ("uplift", "slip"):
+            seen = float(histories[name].sel(joint=joint).max())
+            assert largest.loc[body, name] == pytest.approx(seen, abs=1e-9)
+    quaternion = run["orientation"].sel(body="upper").to_numpy()
+    tilt = 2.0 * np.arccos(np.abs(quaternion[:, 0]))  # about y alone
+    assert largest.loc["upper", "tilt"] == pytest.approx(tilt.max(), abs=1e-9)
+
+
+def test_several_models_at_once_are_one_run_each():
+    common = {"duration": 0.1, "scale": 2.0, "output_rate": 50.0}
+    runs = blockshake.simulate("configuration-1", "alkion", models=["nscd-rigid", "ls-dem"], **common)
+    assert list(runs) == ["nscd-rigid", "ls-dem"]
+    for model, run in runs.items():
+        alone = blockshake.simulate("configuration-1", "alkion", model, **common)
+        np.testing.assert_array_equal(run["position"], alone["position"])
+        assert run.attrs["model"] == model
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        ({"models": "ls-dem"}, "^models: expected a list of models"),
+        ({"models": ["ls-dem"], "model": "ls-dem"}, "^models: expected a list of models, without model"),
+        ({"models": ["nscd-rigid", "dem"]}, "^model: expected one of ls-dem.* not .dem."),
+        ({}, "^model: expected one of ls-dem"),
+    ],
+)
+def test_models_that_are_no_list_of_models_are_refused(asked, words):
+    with pytest.raises(InputError, match=words):
+        blockshake.simulate("configuration-1", "alkion", duration=10.0, **asked)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda motion: blockshake.motion_figures(motion, "u"), "^axis: expected x, y or z, not 'u'"),
+        (lambda motion: blockshake.response_spectrum(motion, [0.0]), "^periods: expected periods above 0 s"),
+        (
+            lambda motion: blockshake.response_spectrum(motion, [1.0], damping=1.0),
+            "^damping: expected a share",
+        ),
+    ],
+)
+def test_figures_of_a_motion_that_cannot_be_are_refused(call, words):
+    with pytest.raises(InputError, match=words):
+        call(blockshake.load_motion({"time_s": TIME, "acceleration_x": SINE}))
+
+
 def test_joints_have_names_in_a_run(leaning_run):
     run, structure = leaning_run
     assert run["joint_force"].sel(joint="slab-lower", axis="z").values[0] == 2e4

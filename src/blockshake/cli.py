@@ -89,7 +89,7 @@ def _with_option(error):
     if not isinstance(error.where, Argument):
         return error
     name, key = error.where, error.key
-    if name == "options" and key:
+    if name in ("options", "layout") and key:
         name, _, key = key.partition(".")
         inner = {
             "layout": key,
@@ -126,7 +126,13 @@ def _parser():
     command.add_argument(
         "--duration", type=float, metavar="S", help="cuts or extends (default: the motion's)"
     )
-    command.add_argument("--model", required=True, help=" or ".join(MODELS))
+    command.add_argument(
+        "--model",
+        dest="models",
+        action="append",
+        required=True,
+        help=f"{' or '.join(MODELS)}; repeatable: RUN-MODEL.nc of each",
+    )
     _add_settings(command)
     command.add_argument("--time-step", type=float, metavar="S", help=f"default {steps}")
     command.add_argument("--output-rate", type=float, metavar="HZ", help="default: the optical system's")
@@ -278,13 +284,16 @@ def _simulate(options):
     from blockshake.dynamics.system import FINISHED
     from blockshake.geometry.structure import load_structure
     from blockshake.simulation.ending import ending
-    from blockshake.simulation.models import part_parameters
+    from blockshake.simulation.models import model_of, part_parameters
     from blockshake.simulation.simulate import simulate_to_file
     from blockshake.study.remarks import motion_remarks, unusual_values
 
     _show_progress()
-    begin = time.monotonic()
     structure, settings = load_structure(options.structure), _settings(options)
+    path, models = Path(options.output), {one: model_of(one) for one in options.models}
+    outputs = {one: path.with_stem(f"{path.stem}-{one}") for one in models}
+    if len(models) == 1:
+        outputs = dict.fromkeys(models, options.output)
     log = logging.getLogger("blockshake")
     for remark in unusual_values(structure.with_parameters(part_parameters(settings)[0])):
         log.info("remark: %s", remark)
@@ -293,19 +302,28 @@ def _simulate(options):
         log.info("remark: %s", remark)
     if not motion.attributes["synthetic"]:
         log.info("%s", provenance(motion.attributes))
-    if Path(options.output).exists():
-        log.info("%s is there and will be replaced", options.output)
-    simulate_to_file(
-        options.output, structure, motion, options.model, settings, options.time_step, options.duration,
-        options.output_rate,
-    )  # fmt: skip
-    with xr.open_dataset(options.output, decode_times=False) as run:
-        words, status, reason = ending(run, structure), run.attrs["status"], run.attrs["reason"]
-    print(f"{options.output}: {words}; took {time.monotonic() - begin:.3g} s", flush=True)
-    if status in FINISHED:
-        return 0
-    print(f"blockshake: {status}: {reason}", file=sys.stderr)
-    return NUMERICAL_FAILURE
+    code = 0
+    for model, output in outputs.items():
+        begin = time.monotonic()
+        if Path(output).exists():
+            log.info("%s is there and will be replaced", output)
+        simulate_to_file(
+            output,
+            structure,
+            motion,
+            model,
+            settings,
+            options.time_step,
+            options.duration,
+            options.output_rate,
+        )
+        with xr.open_dataset(output, decode_times=False) as run:
+            words, status, reason = ending(run, structure), run.attrs["status"], run.attrs["reason"]
+        print(f"{output}: {words}; took {time.monotonic() - begin:.3g} s", flush=True)
+        if status not in FINISHED:
+            print(f"blockshake: {status}: {reason}", file=sys.stderr)
+            code = NUMERICAL_FAILURE
+    return code
 
 
 def _show_progress():
@@ -406,18 +424,15 @@ def _reasons(verdict):
 
 
 def _plan_campaign(options):
-    check_output(f"{options.output}/plan.json")
-    from blockshake.diagnosis.planning.nominal_tests import load_asked
-    from blockshake.diagnosis.planning.page import addition_rows, matrix_rows, write_plan
-    from blockshake.diagnosis.planning.plan import plan_campaign
+    from blockshake.diagnosis.planning.page import addition_rows, matrix_rows
+    from blockshake.diagnosis.planning.plan_campaign import plan_campaign
 
     _show_progress()
-    asked = load_asked(options.structure, options.motions, options.sensors, options.duration)
-    told, additions = plan_campaign(asked, logging.getLogger("blockshake").info)
-    write_plan(options.output, asked, told, additions)
-    _print_table(matrix_rows(told))
-    print()
-    _print_table(addition_rows(additions))
+    plan = plan_campaign(
+        options.structure, options.motions, options.output, options.sensors, options.duration
+    )
+    for rows in (matrix_rows(plan.effects), [("",)], addition_rows(plan.additions)):
+        _print_table(rows)
     print(f"{options.output}/plan.html")
 
 

@@ -27,6 +27,15 @@ class InputError(ValueError):
     -----
     Names and values of files stand in the words. A line break or another control character among them is shown as an
     escape, so that the words are one line, and the end of a very long line is left out.
+
+    Examples
+    --------
+    >>> import blockshake
+    >>> try:
+    ...     blockshake.load_structure("configuration-1", {"materials.concrete.density": -1.0})
+    ... except blockshake.InputError as error:
+    ...     print(error.where, error.key, error.expected, sep="; ")
+    configuration-1; materials.concrete.density; input should be greater than or equal to 0.001, not -1.0
     """
 
     def __init__(self, where: str | PathLike[str], key: str, expected: str) -> None:

@@ -50,6 +50,13 @@ def diagnose(
         folder.
     WorkflowError
         A job failed: the workflow's last lines are the reason, the job and the path of its log.
+
+    Examples
+    --------
+    >>> import blockshake
+    >>> verdict = blockshake.diagnose("my-tests", "my-diagnosis", effort="quick")
+    >>> verdict.decision in ("none", "named", "ambiguous", "combination", "unknown")
+    True
     """
     from blockshake.diagnosis.nominal.plan import plan_diagnosis, result_name
     from blockshake.diagnosis.verdict.verdict import load_verdict

@@ -1,8 +1,10 @@
 """How strong a ground motion is and how long it lasts: peaks, Arias intensity, response spectra."""
 
 import numpy as np
+import numpy.typing as npt
 
-from blockshake.dynamics.motion import CHANNELS
+from blockshake.dynamics.motion import CHANNELS, GroundMotion
+from blockshake.errors import Argument, InputError
 from blockshake.jit import kernel
 
 _GRAVITY = 9.80665  # m/s2, in Arias's definition
@@ -10,7 +12,7 @@ DAMPING = 0.05  # of critical; the engineering convention
 _POINTS_PER_CYCLE = 32.0  # a peak between two of these is missed by less than 0.5 %
 
 
-def motion_figures(motion, axis="x"):
+def motion_figures(motion: GroundMotion, axis: str = "x") -> dict[str, float]:
     """Peaks, Arias intensity and duration of a motion along one axis.
 
     Parameters
@@ -26,9 +28,24 @@ def motion_figures(motion, axis="x"):
         absolute value at the rows, displacement from the first row; ``arias_intensity`` [m/s];
         ``significant_duration`` from 5 to 95 % of it, with its ``significant_start`` and
         ``significant_end`` [s]; ``duration`` of the record [s]; ``end_displacement`` [m].
+
+    Raises
+    ------
+    InputError
+        Another axis.
+
+    Examples
+    --------
+    >>> import blockshake
+    >>> figures = blockshake.motion_figures(blockshake.load_motion("alkion"))
+    >>> for name in ("peak_acceleration", "peak_velocity", "peak_displacement"):
+    ...     print(f"{name}: {figures[name]:.3g}")
+    peak_acceleration: 1.18
+    peak_velocity: 0.0984
+    peak_displacement: 0.0273
     """
+    channel = _channel(axis)
     _, start, end = acceleration_segments(motion, axis)
-    channel = CHANNELS.index(axis)
     displacement = motion.evaluate(motion.table.breaks)[:, channel]
     displacement = displacement - displacement[0]
     velocity = motion.evaluate(motion.table.breaks, derivative=1)[:, channel]
@@ -77,7 +94,9 @@ def _crossing(time, gathered, share):
     return float(np.interp(share * gathered[-1], gathered, time))
 
 
-def response_spectrum(motion, periods, axis="x", damping=DAMPING):
+def response_spectrum(
+    motion: GroundMotion, periods: npt.ArrayLike, axis: str = "x", damping: float = DAMPING
+) -> np.ndarray:
     """Pseudo-acceleration spectrum of one component.
 
     Parameters
@@ -94,9 +113,31 @@ def response_spectrum(motion, periods, axis="x", damping=DAMPING):
     -------
     float64 array, shape (n_periods,)
         ``(2 pi / period)^2`` times the peak relative displacement during the motion [m/s2].
+
+    Raises
+    ------
+    InputError
+        Another axis, a period that is not above zero, a damping that is none below critical.
+
+    Examples
+    --------
+    >>> import blockshake
+    >>> blockshake.response_spectrum(blockshake.load_motion("alkion"), [0.1, 0.5, 2.0]).round(2)
+    array([2.  , 2.89, 0.57])
     """
     step, start, end = acceleration_segments(motion, axis)
-    return pseudo_acceleration(step, start, end, np.asarray(periods, dtype=float), damping)
+    periods = np.asarray(periods, dtype=float)
+    if not ((periods > 0.0) & np.isfinite(periods)).all():
+        raise InputError(Argument("periods"), "", "expected periods above 0 s")
+    if not 0.0 <= damping < 1.0:
+        raise InputError(Argument("damping"), "", f"expected a share of critical damping, not {damping}")
+    return pseudo_acceleration(step, start, end, periods, damping)
+
+
+def _channel(axis):
+    if axis not in CHANNELS[:3]:
+        raise InputError(Argument("axis"), "", f"expected x, y or z, not {axis!r}")
+    return CHANNELS.index(axis)
 
 
 def acceleration_segments(motion, axis="x"):
@@ -108,7 +149,7 @@ def acceleration_segments(motion, axis="x"):
         Length of each segment [s] and acceleration at its two ends [m/s2]; ``end`` and the next
         ``start`` differ where the motion was given as velocity.
     """
-    c = motion.table.coefficients[:, CHANNELS.index(axis)]
+    c = motion.table.coefficients[:, _channel(axis)]
     step = np.diff(motion.table.breaks)
     return step, 2.0 * c[:, 2], 2.0 * c[:, 2] + 6.0 * step * c[:, 3]
 

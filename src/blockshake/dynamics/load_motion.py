@@ -84,6 +84,15 @@ def load_motion(
         a gap in even rows, mixed kinds, too few rows, a file cut short, a header that contradicts its values, several
         channels where none is named, a scale that is 0 or not finite, a displacement beyond all numbers, a correction
         that cannot be made.
+
+    Examples
+    --------
+    >>> import blockshake
+    >>> blockshake.load_motion("alkion", scale=1.5)
+    <GroundMotion alkion: 25 s, given as acceleration>
+    >>> pulse = {"time_s": [0.0, 0.1, 0.2], "acceleration_x": [0.0, 3.0, 0.0]}
+    >>> blockshake.load_motion(pulse, name="pulse")
+    <GroundMotion pulse: 0.2 s, given as acceleration>
     """
     where = source if isinstance(source, (str, PathLike)) else getattr(source, "name", _ARRAYS)
     if not np.isfinite(scale) or scale == 0.0:

@@ -22,7 +22,7 @@ from blockshake.geometry.structure import Structure, load_structure
 from blockshake.measurement.campaigns.campaign import CampaignFile, load_campaign, load_test
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
 from blockshake.measurement.checks.campaign_check import campaign_lines
-from blockshake.own_files.import_campaign import import_campaign
+from blockshake.own_files.import_campaign import make_campaign
 from blockshake.own_files.import_map import ImportMap, load_map
 from blockshake.pages.wording import count_words
 from blockshake.study.config import StudyConfig, load_config
@@ -50,10 +50,21 @@ def check(source: AnyPath | Structure | GroundMotion, baseline: str | float = AU
     baseline : str or float
         Baseline correction of a motion, see `load_motion`; the other files name their own.
 
+    Returns
+    -------
+    str
+
     Raises
     ------
     InputError
         The first fault of the file, or of what it names.
+
+    Examples
+    --------
+    >>> import blockshake
+    >>> print(blockshake.check("my.yaml"))
+    a structure of 2 blocks of 3813 kg in all, and 2 joints
+      2 of 0.6 x 1.2 x 1 m, 1907 kg, height over width 1.7
     """
     if isinstance(source, Structure) or source in shipped_names("structures"):
         return _structure_line(source)
@@ -109,7 +120,7 @@ def _campaign_line(folder):
 def _import_line(source):
     """Lines of the campaign that the map would make; it is made, and thrown away."""
     with tempfile.TemporaryDirectory() as folder:
-        lines = import_campaign(load_map(source), Path(folder) / "campaign", source)
+        lines = make_campaign(load_map(source), Path(folder) / "campaign", source)
     return "\n".join(line.replace(f"{folder}/", "") for line in lines)
 
 

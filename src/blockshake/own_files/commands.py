@@ -1,12 +1,11 @@
 """Commands by which own data come in: import-campaign, convert-motion, new, keys and schema."""
 
 import json
-from dataclasses import replace
 from pathlib import Path
 from textwrap import fill
 
 from blockshake.errors import Argument, InputError
-from blockshake.files import check_output, file_digest, history, write_text
+from blockshake.files import write_text
 
 KINDS = ("structure", "study", "campaign")
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
@@ -122,47 +121,20 @@ def pairs_of(entries, option, form):
 
 
 def _convert_motion(options):
-    check_output(options.output)
-    from blockshake.dynamics.load_motion import load_motion, provenance
-    from blockshake.dynamics.records.contract_csv import write_motion_csv
-    from blockshake.dynamics.records.motion_table import load_motion_table
-    from blockshake.dynamics.records.record import positive_number
+    from blockshake.own_files.convert_motion import convert_motion
     from blockshake.study.remarks import motion_line, motion_remarks
-    from blockshake.tables.table_file import TableLayout
-    from blockshake.validation import validated
 
     columns = pairs_of(options.column, "--column", "READING=COLUMN")
     components = pairs_of(options.component, "--component", "AXIS=FILE")
-    if _given(options, ("unit", "step", "time", "time_unit", *_LAYOUT)):
-        if not options.unit:
-            raise InputError("--unit", "", "expected for a table; the unit and the columns are never guessed")
-        if components:
-            raise InputError("--component", "", "expected beside a record, not a table")
-        if options.step and _given(options, ("time", "time_unit")):
-            raise InputError("--step", "", "expected where there are no times")
-        if not columns and not options.step:
-            raise InputError("--column", "", "expected for a table, or --step for values without times")
-        motion = load_motion_table(
-            options.file, validated(TableLayout, _given(options, _LAYOUT), _MADE), options.time or "time_s",
-            columns, options.unit, options.time_unit or "s", options.baseline,
-            positive_number(options.step, "--step", options.step) if options.step else None,
-        )  # fmt: skip
-    else:
-        motion = load_motion(
-            options.file, baseline=options.baseline, channels=columns or None, components=components
-        )
-    done = f"convert-motion: {provenance(motion.attributes)}"
-    if Path(options.file).is_file():
-        done += f"; digest of {motion.attributes['source']}: {file_digest(options.file)}"
-    attributes = motion.attributes | {"history": history(motion.attributes.get("history"), done)}
-    write_motion_csv(replace(motion, attributes=attributes), options.output)
+    table = _given(options, ("unit", "time", "time_unit", "step")) | {"layout": _given(options, _LAYOUT)}
+    motion = convert_motion(options.file, options.output, options.baseline, columns, components, **table)
     print(f"{options.output}: {motion_line(motion)}")
     for remark in motion_remarks(motion):
         print(f"  remark: {remark}")
 
 
 def _import_campaign(options):
-    from blockshake.own_files.import_campaign import import_campaign
+    from blockshake.own_files.import_campaign import make_campaign
     from blockshake.own_files.import_map import load_map
 
     given = _given(
@@ -178,7 +150,7 @@ def _import_campaign(options):
         asked = load_map(where)
     else:
         asked, where = _map_of_options(options, given, columns), _MADE
-    print("\n".join(import_campaign(asked, options.output, where)))
+    print("\n".join(make_campaign(asked, options.output, where)))
     print(f"{options.output}: {len(asked.tests)} tests imported")
 
 

@@ -2,7 +2,9 @@
 
 import contextlib
 import re
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -10,10 +12,11 @@ import xarray as xr
 
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.records.times import check_increase
-from blockshake.errors import InputError
-from blockshake.files import history, replacing_folder, write_dataset, write_text
+from blockshake.errors import Argument, InputError
+from blockshake.files import AnyPath, history, replacing_folder, write_dataset, write_text
 from blockshake.geometry.schema import AXES
 from blockshake.geometry.structure import load_structure
+from blockshake.measurement.campaigns.campaign import Campaign, load_campaign
 from blockshake.measurement.campaigns.campaign_folder import (
     motion_in_folder,
     structure_in_folder,
@@ -27,14 +30,62 @@ from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.measurement.poses.pose_file import ANGLE, QUATERNION, free_body, poses_of_columns
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
 from blockshake.measurement.sensors.transducers import transducer_names
+from blockshake.own_files.import_map import ImportMap, load_map
 from blockshake.tables.table_file import TableLayout, read_table
 from blockshake.tables.units import unit_size
+from blockshake.validation import validated
 
 _TURNS = tuple(f"q{part}" for part in QUATERNION)
 
 
-def import_campaign(asked, folder, where):
-    """Make the folder of a campaign from tables.
+def import_campaign(source: AnyPath | Mapping[str, Any], output: AnyPath) -> Campaign:
+    """Make the folder of a campaign from spreadsheets or CSV files, whole or not at all.
+
+    Parameters
+    ----------
+    source : str, path or mapping
+        Map of the columns, a YAML file with the keys of ``blockshake keys import``, or its content; files that a
+        mapping names count from the current folder.
+    output : str or path
+        Folder of the campaign, not there yet or empty.
+
+    Returns
+    -------
+    Campaign
+
+    Raises
+    ------
+    InputError
+        A folder with content; faults of the map, of a table, or of the readings. Then nothing is left.
+
+    Examples
+    --------
+    >>> import blockshake, numpy as np, pandas as pd
+    >>> time = np.arange(300) / 100.0
+    >>> moved = np.sin(4.0 * time) * (time > 1.0)
+    >>> pd.DataFrame({"time_s": time, "table": moved, "LVDT3": 1.1 * moved}).to_csv("test.csv", index=False)
+    >>> campaign = blockshake.import_campaign(
+    ...     {
+    ...         "name": "mine", "structure": "my.yaml", "displacement_unit": "mm", "time": "time_s",
+    ...         "columns": {"slab-lvdt.x": "table", "block-1-lvdt.x": "LVDT3"},
+    ...         "tests": [{"name": "t1", "file": "test.csv", "motion": "alkion", "scale": 0.1, "role": "fit"}],
+    ...     },
+    ...     "mine",
+    ... )
+    >>> campaign.tests["t1"].file
+    't1.nc'
+    """
+    if isinstance(source, Mapping):
+        where: str = Argument("source")
+        asked = validated(ImportMap, dict(source), where)
+    else:
+        asked, where = load_map(source), str(source)
+    make_campaign(asked, output, where)
+    return load_campaign(output)
+
+
+def make_campaign(asked, folder, where):
+    """Make the folder of a campaign from an `ImportMap`.
 
     Parameters
     ----------

@@ -5,12 +5,13 @@ import os
 import re
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import yaml
 
 from blockshake.errors import INTERRUPTED, InputError
-from blockshake.files import check_output, load_yaml, write_text
+from blockshake.files import AnyPath, check_output, load_yaml, write_text
 from blockshake.own_files.run_workflow import WorkflowError, cores_of, run_workflow, workflow_command
 from blockshake.pages.wording import model_label
 from blockshake.study.config import load_config
@@ -26,7 +27,13 @@ _LAST = 15  # lines of a workflow that ends without a word of its own
 _FILES = ("structure", "motion")
 
 
-def run_study(file, output=None, cores=None, case=None, say=print):
+def run_study(
+    file: AnyPath,
+    output: AnyPath | None = None,
+    cores: int | None = None,
+    case: str | None = None,
+    say: Callable[[str], object] = print,
+) -> list[Path]:
     """Run a study, or go on with it, and make its report.
 
     Parameters
@@ -54,6 +61,13 @@ def run_study(file, output=None, cores=None, case=None, say=print):
         A study that cannot be run, a case or a number of cores that is none, or another command works in the folder.
     WorkflowError
         A job failed: the lines before say why.
+
+    Examples
+    --------
+    >>> import blockshake
+    >>> report, *_ = blockshake.run_study("my-study.yaml", cores=2, say=str)
+    >>> report.name
+    'my-study.html'
     """
     config, cores, begin = load_config(file), cores_of("study", cores), time.monotonic()
     names = [one.name for one in config.cases]

@@ -1,10 +1,10 @@
 """One simulation: structure, motion and parameters in, a run Dataset or a run file out."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from numbers import Real
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, overload
 
 import numba
 import numpy as np
@@ -24,7 +24,7 @@ from blockshake.measurement.sensors.accelerometers import FINE_RATE
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.falling import still_falling
 from blockshake.simulation.limits import check_limits, has_fine_record
-from blockshake.simulation.models import model_of, split_parameters
+from blockshake.simulation.models import MODELS, model_of, split_parameters
 from blockshake.simulation.run_dataset import add_readings, effective_parameters
 from blockshake.simulation.run_parts import RunParts, reduced, write_run
 from blockshake.simulation.settling import quiet_until, settling
@@ -34,10 +34,26 @@ from blockshake.sources import kernel_sources, module_sources, source_digest
 _WORST_RESIDUAL = 0.05  # a run whose energy audit misses more is not to be trusted
 
 
+@overload
+def simulate(
+    structure: StructureSource, motion: MotionSource, model: str, parameters: Mapping[str, Any] | None = None,
+    time_step: float | None = None, duration: float | None = None, output_rate: float | None = None,
+    accelerometers: bool = True, checkpoint: AnyPath | None = None, scale: float = 1.0,
+) -> xr.Dataset: ...  # fmt: skip
+
+
+@overload
+def simulate(
+    structure: StructureSource, motion: MotionSource, *, models: Sequence[str],
+    parameters: Mapping[str, Any] | None = None, time_step: float | None = None, duration: float | None = None,
+    output_rate: float | None = None, accelerometers: bool = True, scale: float = 1.0,
+) -> dict[str, xr.Dataset]: ...  # fmt: skip
+
+
 def simulate(
     structure: StructureSource,
     motion: MotionSource,
-    model: str,
+    model: str | None = None,
     parameters: Mapping[str, Any] | None = None,
     time_step: float | None = None,
     duration: float | None = None,
@@ -45,8 +61,9 @@ def simulate(
     accelerometers: bool = True,
     checkpoint: AnyPath | None = None,
     scale: float = 1.0,
-) -> xr.Dataset:
-    """Simulate one structure under one motion.
+    models: Sequence[str] | None = None,
+) -> xr.Dataset | dict[str, xr.Dataset]:
+    """Simulate one structure under one motion, by one model or by several.
 
     Parameters
     ----------
@@ -55,7 +72,7 @@ def simulate(
     motion : GroundMotion, str, path or mapping of str to array
         As `blockshake.load_motion` takes it: a shipped name, a file or arrays.
     model : str
-        One of `blockshake.simulation.models.MODELS`.
+        ``ls-dem``, ``nscd-rigid``, ``nscd-elastic`` or ``nscd-viscoelastic``.
     parameters : dict of str to value, optional
         By dotted name, physical and numerical; those of the other solver are ignored. A contact stiffness that is
         not given goes with the material and the height of the structure's blocks.
@@ -71,18 +88,38 @@ def simulate(
         Where a long run is saved every minute, and from where it goes on, bit-identical, if it was cut short.
     scale : float
         Multiplies the motion, not 0 [1].
+    models : list of str, optional
+        In place of ``model``: several, each once, and no checkpoint.
 
     Returns
     -------
-    xarray.Dataset
-        The content of a run file.
+    xarray.Dataset, or dict of str to xarray.Dataset
+        The content of a run file; of ``models`` one by the name of each.
 
     Raises
     ------
     InputError
         Unknown model or parameter, a structure that is wrong, or a run beyond the limits of `check_run`.
+
+    Examples
+    --------
+    >>> import blockshake
+    >>> runs = blockshake.simulate("my.yaml", "alkion", models=["ls-dem", "nscd-rigid"], duration=0.2)
+    >>> for model, run in runs.items():
+    ...     print(model, run.attrs["status"], dict(run["position"].sizes))
+    ls-dem completed {'time': 41, 'body': 3, 'axis': 3}
+    nscd-rigid completed {'time': 41, 'body': 3, 'axis': 3}
     """
     motion = load_motion(motion, scale)
+    if models is not None:
+        if isinstance(models, str) or model is not None or checkpoint is not None:
+            wrong = "expected a list of models, without model and without checkpoint"
+            raise InputError(Argument("models"), "", wrong)
+        several = {one: model_of(one) for one in models}
+        common = parameters, time_step, duration, output_rate, accelerometers
+        return {one: simulate(structure, motion, one, *common) for one in several}
+    if model is None:
+        raise InputError(Argument("model"), "", f"expected one of {', '.join(MODELS)}")
     of = _set_up(structure, motion, model, parameters, time_step, duration, output_rate, accelerometers)
     trajectory = of.solve(checkpoint=checkpoint)
     parts = RunParts(of.structure, of.coarse, of.fine, trajectory)

@@ -54,8 +54,8 @@ def animate(
 
     Parameters
     ----------
-    run, meshes
-        Of `load_run`.
+    run : str, path or xarray.Dataset
+        A run file, or what `simulate` returns.
     output : str or path
         GIF, or MP4 where ffmpeg is installed, by the suffix.
     view : str
@@ -65,12 +65,25 @@ def animate(
         it is.
     speed : float
         Seconds of the run in a second of the animation.
+    meshes : str or path, optional
+        Folder of the structure's meshes; by default that of the run file, or the current one.
+
+    Returns
+    -------
+    Path
 
     Raises
     ------
     InputError
         No run, a mesh that is not found, an unknown view or suffix, a number that is not positive, or more than
         `_MOST_FRAMES` frames.
+
+    Examples
+    --------
+    >>> import blockshake
+    >>> run = blockshake.simulate("my.yaml", "alkion", "nscd-rigid", duration=0.2)
+    >>> blockshake.animate(run, "run.gif", magnification=10.0).name
+    'run.gif'
     """
     _check_suffix(check_output(output))
     if view not in VIEWS:

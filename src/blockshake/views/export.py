@@ -16,11 +16,33 @@ FORMATS = {".csv": "tables", ".vtkhdf": "ParaView", ".glb": "glTF"}
 
 
 def export(run: RunSource, output: AnyPath, meshes: AnyPath | None = None) -> list[Path]:
-    """Write a run in another program's format, one of `FORMATS` by the suffix of ``output``, atomically.
+    """Write a run in another program's format, atomically; a remark says where places count from, if not from 0.
 
-    ``run`` and ``meshes`` are those of `load_run`. The files are returned, some of them beside ``output``; a remark of
-    the log says where places count from, if not from 0. Errors are those of `load_run`, another suffix, and a file that
-    cannot be written.
+    Parameters
+    ----------
+    run : str, path or xarray.Dataset
+        A run file, or what `simulate` returns.
+    output : str or path
+        The suffix is the format: ``.csv``, ``.vtkhdf`` of ParaView or ``.glb`` of glTF.
+    meshes : str or path, optional
+        Folder of the structure's meshes; by default that of the run file, or the current one.
+
+    Returns
+    -------
+    list of Path
+        The files, some of them beside ``output``.
+
+    Raises
+    ------
+    InputError
+        No run, a mesh that is not found, another suffix, a file that cannot be written.
+
+    Examples
+    --------
+    >>> import blockshake
+    >>> run = blockshake.simulate("my.yaml", "alkion", "nscd-rigid", duration=0.2)
+    >>> [path.name for path in blockshake.export(run, "run.csv")]
+    ['run-bodies.csv', 'run-joints.csv', 'run-markers.csv', 'run-energy.csv']
     """
     path = check_output(output)
     suffix = path.suffix.lower()

@@ -64,12 +64,35 @@ class _Panel(NamedTuple):
 def plot(run: RunSource, output: AnyPath | None = None, meshes: AnyPath | None = None) -> Figure:
     """Draw a run: one panel a quantity over the same time.
 
-    ``run`` and ``meshes`` are those of `load_run`; ``output`` is a PNG, PDF or SVG to write, by the suffix. Errors
-    are those of `load_run`, and another suffix.
-
     Drift of every block that is not driven, along y only where it is a tenth of that along x; displacement transducers,
     where there are any; joints that had a face at the start, without the peaks of their impacts; energy, the potential
     one since the start. More than seven blocks, transducers or joints are a map: one row each, the value a colour.
+
+    Parameters
+    ----------
+    run : str, path or xarray.Dataset
+        A run file, or what `simulate` returns.
+    output : str or path, optional
+        PNG, PDF or SVG to write, by the suffix.
+    meshes : str or path, optional
+        Folder of the structure's meshes; by default that of the run file, or the current one.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        No run, a mesh that is not found, another suffix, a file that cannot be written.
+
+    Examples
+    --------
+    >>> import blockshake
+    >>> run = blockshake.simulate("my.yaml", "alkion", "nscd-rigid", duration=0.2)
+    >>> figure = blockshake.plot(run, "run.png")
+    >>> [axes.get_ylabel().splitlines()[0] for axes in figure.axes if axes.get_ylabel()]
+    ['drift along x', 'normal force', 'friction ratio', 'energy', "audit's residual"]
     """
     if output is not None:
         check_picture(check_output(output))

@@ -12,7 +12,7 @@ from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.measurement.poses.pose_file import read_poses
 from blockshake.measurement.poses.posed_test import load_posed
-from blockshake.own_files.import_campaign import import_campaign
+from blockshake.own_files.import_campaign import make_campaign
 from blockshake.own_files.import_map import load_map
 
 STRUCTURE = {
@@ -189,7 +189,7 @@ def test_a_table_in_other_units_is_imported(tmp_path, structure):
         "tests": [{"name": "drop", "file": "filmed.txt", "role": "fit"}],
     }  # fmt: skip
     (tmp_path / "map.yaml").write_text(yaml.safe_dump(mapping))
-    lines = import_campaign(load_map(tmp_path / "map.yaml"), tmp_path / "made", "map.yaml")
+    lines = make_campaign(load_map(tmp_path / "map.yaml"), tmp_path / "made", "map.yaml")
     assert "1 test of block" in lines[0]
     read = read_poses(tmp_path / "made" / "drop.csv", structure)
     same = read_poses(written(tmp_path, planar()), structure)
@@ -206,5 +206,5 @@ def test_a_map_with_a_column_of_no_pose_is_refused(tmp_path, structure):
     }  # fmt: skip
     (tmp_path / "map.yaml").write_text(yaml.safe_dump(mapping))
     with pytest.raises(InputError, match=r"columns\.block\.tilt"):
-        import_campaign(load_map(tmp_path / "map.yaml"), tmp_path / "made", "map.yaml")
+        make_campaign(load_map(tmp_path / "map.yaml"), tmp_path / "made", "map.yaml")
     assert not (tmp_path / "made").exists()

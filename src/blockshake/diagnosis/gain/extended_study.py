@@ -17,7 +17,7 @@ from blockshake.effects.effect import Experiment
 from blockshake.effects.places import nowhere
 from blockshake.effects.registry import EFFECTS
 from blockshake.errors import InputError
-from blockshake.files import check_output, file_digest, load_yaml, write_text
+from blockshake.files import AnyPath, check_output, file_digest, load_yaml, write_text
 from blockshake.geometry.schema import EXTENSION, StructureFile
 from blockshake.geometry.structure import Structure, load_structure
 from blockshake.geometry.structure_file import dotted_values, replace_into
@@ -47,7 +47,7 @@ class _Extended(NamedTuple):
     members: dict
 
 
-def extend_study(verdict, study, output):
+def extend_study(verdict: AnyPath, study: AnyPath, output: AnyPath) -> list[str]:
     """Write a study in which the cause of a verdict is a variable, and the structures that state it.
 
     Parameters
@@ -71,6 +71,15 @@ def extend_study(verdict, study, output):
         A verdict of another version or that names nothing that a structure can hold, a study without a structure that
         has the cause, or one whose variables or names clash with it. Nothing is written.
 
+    Examples
+    --------
+    >>> import blockshake
+    >>> for line in blockshake.extend_study("verdict.json", "my-study.yaml", "extended.yaml"):
+    ...     print(line)
+    extended-configuration-1.yaml
+    extended.yaml
+      extension.joints.slab.block-1.friction_factor [1]
+
     Notes
     -----
     The cause enters by `extended_experiment`, as in the diagnosis: each member of its posterior makes a structure, and
@@ -78,9 +87,9 @@ def extend_study(verdict, study, output):
     linked; correlations that 40 members tell from none are kept. Calibrations and diagnoses stay with the study that
     is extended.
     """
-    found, config, output = load_verdict(verdict), load_config(study), check_output(output)
-    if output.suffix not in (".yaml", ".yml"):
-        raise InputError(output, "", f"expected a YAML file, {output}.yaml")
+    found, config, made = load_verdict(verdict), load_config(study), check_output(output)
+    if made.suffix not in (".yaml", ".yml"):
+        raise InputError(made, "", f"expected a YAML file, {made}.yaml")
     if config.extension is not None:
         raise InputError(study, "extension", "expected a study that has no cause yet")
     causes, lines = _causes(found, verdict)
@@ -90,7 +99,7 @@ def extend_study(verdict, study, output):
         if any(map(_has_place, causes)) and structure.content != found.structure:
             lines.append(f"{case.name} is left out: its structure is not the one that was tested")
             continue
-        path = output.with_name(f"{output.stem}-{Path(case.structure).stem}.yaml")
+        path = made.with_name(f"{made.stem}-{Path(case.structure).stem}.yaml")
         name = f"{case.name}-extended"
         if case.structure not in extended:
             extended[case.structure] = _extended(structure, causes, path)
@@ -104,9 +113,7 @@ def extend_study(verdict, study, output):
         raise InputError(study, "cases", expected)
     _check_clash(config.ensemble.distributions, extended.values(), study)
     variables = {name: values for one in extended.values() for name, values in one.members.items()}
-    ensemble, target = _ensemble(
-        config.ensemble, variables, output.with_name(f"{output.stem}-correlation.csv")
-    )
+    ensemble, target = _ensemble(config.ensemble, variables, made.with_name(f"{made.stem}-correlation.csv"))
     kept = {
         key: value
         for key, value in load_yaml(study).items()
@@ -127,11 +134,11 @@ def extend_study(verdict, study, output):
     header = _header(verdict, found, causes)
     texts = {one.path: header + _text(one.mapping) for one in extended.values()}
     texts |= {Path(ensemble["correlation"]): target.to_csv()} if target is not None else {}
-    texts[output] = f"{header}# Run: blockshake study {output}\n{_text(whole)}"
-    _write(texts, output)
+    texts[made] = f"{header}# Run: blockshake study {made}\n{_text(whole)}"
+    _write(texts, made)
     for one in extended.values():
         for mesh in {shape.mesh for shape in one.structure.file.shapes.values()} - {None}:
-            copy_beside(one.structure.folder / mesh, output.parent / mesh)
+            copy_beside(one.structure.folder / mesh, made.parent / mesh)
     return [
         *lines,
         *map(str, texts),

@@ -12,7 +12,7 @@ _SHOWN = 3  # pairs of an addition
 
 
 def write_plan(folder, asked, told, additions):
-    """Write ``plan.json`` and ``plan.html`` of what `plan_campaign` gave."""
+    """Write ``plan.json`` and ``plan.html`` of what `plan_of` gave."""
     effects = {
         name: {
             "size": EFFECTS[name].parameters[0].name,

@@ -40,7 +40,7 @@ class Addition(NamedTuple):
     separates: tuple
 
 
-def plan_campaign(asked, progress):
+def plan_of(asked, progress):
     """`Told` by effect, and `Addition` by falling number of pairs.
 
     Parameters

@@ -126,10 +126,26 @@ class Campaign(Shown):
 def load_campaign(folder: AnyPath) -> Campaign:
     """Campaign of a folder, its test files found but not yet read.
 
+    Parameters
+    ----------
+    folder : str or path
+        With a ``campaign.yaml``.
+
+    Returns
+    -------
+    Campaign
+
     Raises
     ------
     InputError
         Missing folder or file, unknown key, a test named twice, a file outside of the folder, a path with braces.
+
+    Examples
+    --------
+    >>> import blockshake
+    >>> campaign = blockshake.load_campaign("my-tests")
+    >>> [name for name, test in campaign.tests.items() if test.role == "sealed"]
+    ['alkion-350', 'basso-tirreno-275']
     """
     folder = Path(folder)
     path = folder / "campaign.yaml"

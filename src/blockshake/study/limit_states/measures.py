@@ -35,17 +35,21 @@ class SeenRun(NamedTuple):
 def value_of(run, state):
     """Value of a `LimitState`'s measure in a `SeenRun`, SI; NaN where the run does not tell it."""
     names = run.structure.body_names
-    bodies = [names.index(name) for name in state.bodies]
-    if state.measure == "tilt":
+    return measured(run, state.measure, [names.index(name) for name in state.bodies])
+
+
+def measured(run, measure, bodies):
+    """Value of one of `MEASURES` of a body, or of the joint of two, by their numbers, as of `value_of`."""
+    if measure == "tilt":
         return _tilt(run, *bodies)
-    if state.measure == "drift":
+    if measure == "drift":
         return float(np.hypot(*_drift(run, *bodies).T).max())
-    if state.measure == "residual":
+    if measure == "residual":
         late = run.time >= run.time[-1] - RESIDUAL_WINDOW
         return float(np.hypot(*_drift(run, *bodies)[late].mean(axis=0))) if run.is_whole else np.nan
-    joints = _joints_of(run.structure, bodies, with_above=state.measure == "impact_velocity")
-    values = [_of_joint(run, state.measure, joint) for joint in joints]
-    if state.measure == "impact_velocity":
+    joints = _joints_of(run.structure, bodies, with_above=measure == "impact_velocity")
+    values = [_of_joint(run, measure, joint) for joint in joints]
+    if measure == "impact_velocity":
         values += [_fastest(gap_of_pair(run.structure, run.position, run.turns, *pair), run.time)
                    for pair in pairs_apart(run.structure, bodies)]  # fmt: skip
     known = [value for value in values if np.isfinite(value)]

@@ -124,6 +124,13 @@ def draw_samples(
         Too few or too many samples, an unknown word, a wrong distribution, a target with unknown names or that is no
         correlation matrix.
 
+    Examples
+    --------
+    >>> import blockshake
+    >>> uncertain = {"restitution": {"distribution": "uniform", "loc": 0.3, "scale": 0.4}}
+    >>> blockshake.draw_samples(10, distributions=uncertain).values["restitution"].round(2).tolist()
+    [0.48, 0.56, 0.36, 0.44, 0.68, 0.64, 0.4, 0.32, 0.52, 0.6]
+
     Notes
     -----
     McKay, Beckman and Conover (1979) for the strata, Vorechovsky and Novak (2009) for the

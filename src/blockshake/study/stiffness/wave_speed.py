@@ -110,6 +110,13 @@ def calibrate_stiffness(structure: StructureSource, parameters: Mapping[str, Any
     InputError
         As `tower_of` and `measure_wave_speed`.
 
+    Examples
+    --------
+    >>> import blockshake
+    >>> stiffness = blockshake.calibrate_stiffness("my.yaml")
+    >>> stiffness["normal_stiffness"] > stiffness["shear_stiffness"] > 0.0
+    True
+
     Notes
     -----
     In a chain whose joints neither open nor slip every speed goes with the square root of the stiffness, but for the
