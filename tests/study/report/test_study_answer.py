@@ -356,7 +356,7 @@ def test_record_and_level_explain_what_they_make(content):
     shares = []
     for demand in (made, 0.01 * noise):
         cloud = xr.Dataset(
-            {"demand": ("sample", demand)},
+            {"demand": ("sample", demand), "largest_drift": ("sample", np.full(32, 0.4))},
             {"sample": samples, "record": ("sample", [f"r{one}" for one in record])},
         )
         response = replace(content.cases[FIRST].responses["ls-dem"], cloud=cloud)
@@ -365,6 +365,17 @@ def test_record_and_level_explain_what_they_make(content):
         ]
     assert shares[0] == pytest.approx(1.0)
     assert shares[1] < 0.5
+
+
+def test_a_bracket_of_one_step_without_falls_is_no_half_of_the_samples_and_no_fall(content):
+    one = content.fragility[FIRST].copy(deep=True)
+    for name, value in (("dispersion", 0.0), ("capacity_lower", 1.0), ("capacity_upper", 1.25)):
+        one[name].values[...] = value
+    said = next(text for text in texts(answer(replace(content, fragility={FIRST: one}))) if "ladder" in text)
+    assert said == (
+        f"{FIRST}: all samples reach a potential collapse between 1 and 1.25 times the motion. It is no fall but a "
+        "displacement of more than 400.0 mm. The ladder climbs in steps of 0.25."
+    )
 
 
 def test_the_measured_peak_stands_with_the_models_that_it_is_like(content):

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from blockshake.dynamics.system import FALLEN
 from blockshake.pages.blocks import Figure, Items, Section, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.wording import (
@@ -61,17 +62,17 @@ def _climbs(content):
 
 
 def words(content, name):
-    """Median capacity, safe factor and what the samples do not tell, of one case in sentences."""
+    """Factors at which samples reach a potential collapse, and what they do not tell, of one case in sentences."""
     result, case = content.fragility[name], content.cases[name]
     unit, measure = _unit(content, case)
     size = result.sizes["sample"]
     model = model_label(content.study["fragility"]["model"])
     who = f"{name}, {case.motion}, {size} samples by {model}"
     ended = count_outcomes(result["status"])
-    less = "".join(
+    less = _kinds(result) + "".join(
         f" The last run of {count_words(count, 'sample')} {how}."
         for count, how in (
-            (ended.falling, "still fell when the window ended, which counts as a collapse"),
+            (ended.falling, "still fell when the window ended, which counts as a fall"),
             (ended.failed, "ended for a numerical reason"),
         )
         if count
@@ -88,22 +89,38 @@ def words(content, name):
     if float(result["dispersion"]) == 0.0:
         low, high = float(result["capacity_lower"].max()), float(result["capacity_upper"].min())
         return (
-            f"{who}: all capacities lie between {given(low)} and {given(high)} times the motion ({number(low * unit)} "
-            f"and {number(high * unit)} {measure}). The levels are too far apart to tell more.{less}"
+            f"{who}: all samples reach a potential collapse between {given(low)} and {given(high)} times the motion "
+            f"({number(low * unit)} and {number(high * unit)} {measure}). The levels are too far apart to tell "
+            f"more.{less}"
         )
     # of a uniform spread over one step of the scales
     smallest_known = float(result["scale"][1] - result["scale"][0]) / median / np.sqrt(12.0)
     if float(result["dispersion"]) < smallest_known:
         less += (
-            " The capacities differ by less than the levels are apart: the dispersion, and with it the factor that "
+            " The factors differ by less than the levels are apart: the dispersion, and with it the factor that "
             f"{percent(SAFE)} % are below, is bounded by the level below alone."
         )
     return (
-        f"{who}: half of the capacities are below {limited(result, 'median')} times the motion "
+        f"{who}: half of the samples reach a potential collapse below {limited(result, 'median')} times the motion "
         f"({number(median * unit)} {measure}), {percent(SAFE)} % below {limited(result, 'safe_scale')} "
         f"({number(float(result['safe_scale']) * unit)} {measure}); limits of {quantile_percent(CONFIDENCE)} in "
         f"brackets. Dispersion: {limited(result, 'dispersion')}.{less}"
     )
+
+
+def _kinds(result):
+    """How many potential collapses are falls and how many displacements, with their limit, and the ladder's step."""
+    step = float(result["scale"][1] - result["scale"][0]) if result.sizes["scale"] > 1 else 0.0
+    reached = np.isfinite(result["capacity_upper"].to_numpy())
+    fell = int((reached & np.isin(result["status"].values, FALLEN)).sum())
+    slid, limits = int(reached.sum()) - fell, millimetre_range(result["largest_drift"])
+    words = f" The ladder climbs in steps of {given(step)}." if step else ""
+    if not reached.any():
+        return words
+    if not fell:
+        return f" None fell: every potential collapse is a displacement of more than the limit, {limits} mm.{words}"
+    beyond = f" and {slid} displacements of more than the limit, {limits} mm" if slid else ""
+    return f" The potential collapses are {count_words(fell, 'fall')}{beyond}.{words}"
 
 
 def _unit(content, case):

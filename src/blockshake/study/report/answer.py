@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from blockshake.dynamics.system import FALLEN
 from blockshake.pages.blocks import Box, Figure, Heading, Items, Section, Table, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.wording import (
@@ -260,7 +261,14 @@ def _measured(content, found):
 def _intensities(content):
     """Intensities at which half of the samples reach a potential collapse, and what the motion explains."""
     ladders = [
-        (name, millimetre_range(one["largest_drift"]), float(one["median"]))
+        {
+            "name": name,
+            "drift": millimetre_range(one["largest_drift"]),
+            "fell": bool(np.isin(one["status"].values, FALLEN).any()),
+            "median": float(one["median"]),
+            "dispersion": float(one["dispersion"]),
+            "bracket": (float(one["capacity_lower"].max()), float(one["capacity_upper"].min())),
+        }
         for name, one in content.fragility.items()
         if np.isfinite(one["median"])
     ]
