@@ -180,7 +180,7 @@ class FakeStudy:
             made = [
                 self.results / kind / model / f"{name}.nc" for kind in ("samples", "sensitivities", "indices")
             ]
-            write_dataset(made[2], indices_of_case(*made[:2], None, 77))
+            write_dataset(made[2], indices_of_case(*made[:2], None, 77, {}))
             log = self.logs / "simulate_batch" / model / name / f"000-{count - 1:03d}.log"
             write_text(log, f"Took 50.0 s, {CPU_TIME} CPU s.\n")
 

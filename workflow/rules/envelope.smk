@@ -54,8 +54,10 @@ rule measure_sensitivity:
     conda:
         "../envs/blockshake.yaml"
     params:
-        structure=lambda wildcards: CASES[wildcards.case]["structure"],
+        case=case_definition,
         linked=lookup(dpath="ensemble/linked", within=config),
+        seed=lookup(dpath="ensemble/seed", within=config),
+        size=lookup(dpath="ensemble/size", within=config),
         yaml_contents=yaml_contents(structure_file),
         source=source_of("measure_sensitivity"),
     script:
@@ -80,7 +82,10 @@ rule compare_models:
         "../envs/blockshake.yaml"
     params:
         models=MODELS,
+        case=case_definition,
         measured=lambda wildcards: CASES[wildcards.case]["measured"],
+        seed=lookup(dpath="ensemble/seed", within=config),
+        size=lookup(dpath="ensemble/size", within=config),
         yaml_contents=yaml_contents(measured_files),
         source=source_of("compare_models"),
     script:

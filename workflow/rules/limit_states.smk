@@ -44,7 +44,9 @@ rule measure_indices:
     conda:
         "../envs/blockshake.yaml"
     params:
+        case=case_definition,
         seed=lookup(dpath="ensemble/seed", within=config),
+        size=lookup(dpath="ensemble/size", within=config),
         source=source_of("measure_indices"),
     script:
         "../scripts/measure_indices.py"

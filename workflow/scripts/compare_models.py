@@ -1,10 +1,12 @@
 from blockshake.files import write_dataset
 from blockshake.log import logging_to
 from blockshake.study.comparison.comparison import compare_case
+from blockshake.study.ensembles.levels import levels_of
 
 with logging_to(snakemake.log[0]):
     input, params = snakemake.input, snakemake.params
     batches = {model: input[f"batches {model}"] for model in params.models}
     twins = {model: input.get(f"twin {model}") for model in params.models}
-    found = compare_case(batches, twins, params.measured, input.base)
+    levels = levels_of(params.case, params.seed, params.size)
+    found = compare_case(batches, twins, params.measured, input.base, levels)
     write_dataset(snakemake.output[0], found)

@@ -75,9 +75,24 @@ def test_of_many_samples_the_first_are_compared(ensembles, tmp_path, monkeypatch
     files = [tmp_path / f"{first}.nc" for first in (0, 2)]
     for first, file in zip((0, 2), files, strict=True):
         write_dataset(file, whole.isel(sample=slice(first, first + 2)))
-    found = comparison.compare_case({"ls-dem": files}, {}, None, None)
+    found = comparison.compare_case({"ls-dem": files}, {}, None, None, {})
     xr.testing.assert_equal(found, compare_models({"ls-dem": whole.isel(sample=slice(3))}, {}, None))
     assert int(found["counted"].sel(model="ls-dem")) == 3
+
+
+def test_distances_are_made_level_by_level(ensembles, tmp_path):
+    """Samples of one level alone stand behind a distance: those of the other may lie anywhere."""
+    files, other = {}, {}
+    for model, whole in ensembles.items():
+        files[model] = [tmp_path / f"{model}.nc"]
+        write_dataset(files[model][0], whole)
+        other[model] = whole.isel(sample=slice(0, None, 2))
+    levels = {sample: (3.0, 6.0)[sample % 2] for sample in range(4)}
+    found = comparison.compare_case(files, {}, None, None, levels)
+    assert found["level"].values.tolist() == [3.0, 6.0]
+    own = compare_models(other, {}, None)
+    xr.testing.assert_equal(found.sel(level=3.0, drop=True), own)
+    assert int(found["counted"].sel(level=6.0, model="ls-dem")) == 2
 
 
 def test_floor_and_horizon_are_those_of_the_twin(compared):

@@ -75,7 +75,7 @@ def test_pairs_beyond_chance_are_counted(content):
     case.differences["distance_chance"][:] = 1.0
     assert "of none of 6 pairs of models are farther apart" in case_words(case)
     case.differences["distance_chance"][:] = np.nan
-    assert "x 2: too few samples to tell the ensembles of any two models apart." in case_words(case)
+    assert f"{FIRST}: too few samples to tell the ensembles of any two models apart." in case_words(case)
 
 
 def test_a_study_without_tests_has_no_scores_and_one_of_one_model_no_section(fake, content):

@@ -79,11 +79,22 @@ def apart_of(content):
 
 def at_levels(content, levels=(3.0, 6.0)):
     """The content with the samples of the first case at levels in turn, and without its measured test."""
+    case = content.cases[FIRST]
+
+    def twice(found):
+        return xr.concat([found, found], xr.Variable("level", list(levels)))
+
+    responses = {
+        model: replace(one, sensitivity=twice(one.sensitivity), indices=twice(one.indices))
+        for model, one in case.responses.items()
+    }
     return changed(
         content,
         FIRST,
+        responses=responses,
+        differences=twice(case.differences),
         levels={sample: levels[sample % len(levels)] for sample in range(10)},
-        settings={**content.cases[FIRST].settings, "intensity": {"measure": "pga", "levels": levels}},
+        settings={**case.settings, "intensity": {"measure": "pga", "levels": levels}},
         measured=None,
         synthetic=False,
     )

@@ -1,5 +1,7 @@
 """Section of the report on sensitivities, where the answer is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -47,7 +49,7 @@ def made_up(share=0.6, correlation=-0.7, spread=0.01, level=0.3, shared=0.01):
 
 
 def test_the_dominating_variable_is_named_with_its_interval_and_the_level_of_chance():
-    words = sentence(made_up(), "block-2", "high-face", NOISE)
+    words = sentence(made_up(), "block-2", "high-face")
     assert "differ by 10.0 mm" in words
     assert "by itself: friction, concrete on concrete 0.60 [0.50, 0.70]; level of chance 0.30" in words
     assert "follows friction, concrete on concrete -0.70 [-0.90, -0.50]" in words
@@ -58,21 +60,47 @@ def test_the_dominating_variable_is_named_with_its_interval_and_the_level_of_cha
 def test_a_share_of_too_few_samples_for_limits_stands_without_them():
     few = made_up()
     few["first_order_interval"][:] = np.nan
-    words = sentence(few, "block-2", "high-face", NOISE)
+    words = sentence(few, "block-2", "high-face")
     assert "by itself: friction, concrete on concrete 0.60; level of chance 0.30" in words
 
 
 def test_nothing_is_named_within_chance():
-    words = sentence(made_up(share=0.2, correlation=0.25), "block-2", "high-face", NOISE)
+    words = sentence(made_up(share=0.2, correlation=0.25), "block-2", "high-face")
     assert "No variable is shown to explain any of that by itself" in words
     assert "No variable is shown to steer the peak" in words
 
 
-def test_samples_closer_than_the_noise_have_nothing_to_explain():
-    words = sentence(made_up(spread=2.5e-5), "block-2", "high-face", NOISE)
-    assert "differ by 0.025 mm" in words
-    assert "nothing to explain" in words
-    assert "friction" not in words
+def with_sensitivities(fake, **found):
+    """Content of the first case alone, with the `sensitivity` of its markers by some models."""
+    content = load_content(fake.study, fake.results)
+    case = content.cases["configuration-1"]
+    markers = {"low-face": "block-1-face", "high-face": "block-3-face"}
+    for model, one in zip(list(case.responses), found.values(), strict=False):
+        own = one.assign_coords(marker=[markers[name] for name in one["marker"].values])
+        own = own.reindex(marker=[*markers.values(), "block-2-face"], fill_value=0.0)
+        case.responses[model] = replace(case.responses[model], sensitivity=own)
+    responses = dict(list(case.responses.items())[: len(found)])
+    return replace(content, cases={case.name: replace(case, responses=responses)})
+
+
+def test_models_by_which_nothing_is_explained_share_a_line_and_have_no_figure(fake):
+    nothing = made_up(share=0.2, correlation=0.25)
+    content = with_sensitivities(fake, a=nothing, b=nothing, c=made_up(spread=2.5e-5))
+    items, figures = (
+        [one for one in sensitivities(content).blocks if one.kind == kind] for kind in ("items", "figure")
+    )
+    assert items[-1].items == (
+        "No variable explains more than chance does: LS-DEM (samples of block-3 differ by 10 mm), "
+        "NSCD rigid (samples of block-3 differ by 10 mm).",
+        "Nothing is there to explain by NSCD elastic: the samples differ by less than the noise of a marker, 0.100 mm.",
+    )
+    assert figures == []
+    content = with_sensitivities(fake, a=made_up(), b=nothing)
+    items, figures = (
+        [one for one in sensitivities(content).blocks if one.kind == kind] for kind in ("items", "figure")
+    )
+    assert items[-1].items[0].startswith("LS-DEM: the samples of block-3 differ by 10.0 mm")
+    assert len(figures) == 2
 
 
 def test_figure_shows_every_variable_with_interval_and_level():
@@ -114,10 +142,9 @@ def test_variables_that_share_an_index_are_named(shared, words):
 def test_how_many_samples_an_index_rests_on_stands_beside_it(fake):
     """Of the made-up configuration 4 by rigid NSCD one of six samples collapsed and one failed."""
     content = load_content(fake.study, fake.results)
-    (told,) = [block.items for block in sensitivities(content).blocks if block.kind == "items"]
-    few = "configuration-4 by NSCD rigid (6 samples, of which 4 for the history, 5 for the peak)"
-    (words,) = [words for words in told if few in words]
-    assert words.endswith("too few completed samples for an index.")
+    told = next(block.items for block in sensitivities(content).blocks if block.kind == "items")
+    assert told[-1].startswith("Too few completed samples for any sensitivity: ")
+    assert "configuration-4 by NSCD rigid (4)" in told[-1]
     assert any(words.startswith("configuration-1 by LS-DEM, configuration-1 by NSCD rigid") for words in told)
 
 

@@ -30,6 +30,7 @@ from blockshake.study.ensembles.ensemble import (
     moving_markers,
 )
 from blockshake.study.ensembles.envelope import counted_samples
+from blockshake.study.ensembles.levels import by_level
 
 MOST = 400  # samples of a model that are compared: each is held against each
 TOLD_APART_BY = 3.0  # standard deviations of a marker's noise that curves are apart when they have parted
@@ -60,16 +61,24 @@ _DESCRIBED = {
 }
 
 
-def compare_case(batches, twins, named, base):
+def compare_case(batches, twins, named, base, levels):
     """`compare_models` of a case, from files.
 
     ``batches``: files of its samples by model, of which the first `MOST` are compared; ``twins``: file of the batch
     `HALF_STEP` by model, or None; ``named`` and ``base`` as of `coverage_of_case`, None where the case is
-    compared with no test.
+    compared with no test; ``levels`` from `levels_of`: the result is along ``level`` where there are any.
     """
     ensembles = {model: first_samples(files) for model, files in batches.items()}
     loaded = {model: first_samples([path]) for model, path in twins.items() if path}
-    return compare_models(ensembles, loaded, measured_on_clock(named, base) if named else None)
+    measured = measured_on_clock(named, base) if named else None
+    return by_level(
+        levels,
+        lambda of: compare_models(
+            {model: of(one) for model, one in ensembles.items()},
+            {model: of(one) for model, one in loaded.items()},
+            measured,
+        ),
+    )
 
 
 def first_samples(files):

@@ -5,7 +5,7 @@ from itertools import combinations
 import numpy as np
 
 from blockshake.pages.blocks import Heading, Items, Section, Text
-from blockshake.pages.wording import count_words, given, model_label, share_words
+from blockshake.pages.wording import count_words, model_label, share_words
 from blockshake.study.comparison.tables import (
     in_millimetres,
     other_settings_table,
@@ -28,7 +28,7 @@ def models(content):
             "models, against a sample and its twin by one model, which differs by less than any test could tell. All "
             "displacements are along x and relative to the slab."
         ),
-        Items(tuple(map(case_words, content.cases.values()))),
+        Items(tuple(map(case_words, content.stripes))),
         pairs_table(content),
     ]
     if (prices := other_settings_table(content)) is not None:
@@ -41,17 +41,17 @@ def models(content):
     return Section("Models against each other", "models", tuple(blocks))
 
 
-def case_words(case):
-    """How far the models of a case are apart, in sentences."""
-    pairs = list(combinations(case.differences["model"].values, 2))
-    at = {pair: case.differences.sel(model=pair[0], other=pair[1]) for pair in pairs}
+def case_words(stripe):
+    """How far the models of a case, or of one of its levels, are apart, in sentences."""
+    pairs = list(combinations(stripe.differences["model"].values, 2))
+    at = {pair: stripe.differences.sel(model=pair[0], other=pair[1]) for pair in pairs}
     distance = {pair: float(at[pair]["distance"]) for pair in pairs if np.isfinite(at[pair]["distance"])}
     beyond = [
         distance[pair] > float(at[pair]["distance_chance"])
         for pair in distance
         if np.isfinite(at[pair]["distance_chance"])
     ]
-    words = f"{case.name}, {case.motion} x {given(case.settings['scale'])}: "
+    words = f"{stripe.name}: "
     if not beyond:
         words += "too few samples to tell the ensembles of any two models apart."
     elif len(pairs) == 1:

@@ -66,15 +66,16 @@ def _measured(case, name, marker):
 def pairs_table(content):
     """Distances of every pair of models in every case, beside chance and the floor of their numerics."""
     rows = []
-    for case in content.cases.values():
-        found = case.differences
+    for stripe in content.stripes:
+        found = stripe.differences
         for own, other in combinations(found["model"].values, 2):
             at = found.sel(model=own, other=other)
             floors = [found["floor"].sel(model=model) for model in (own, other)]
             rows.append((
-                case.name, f"{model_label(own)} and {model_label(other)}", in_millimetres(at["distance"]),
+                stripe.name, f"{model_label(own)} and {model_label(other)}", in_millimetres(at["distance"]),
                 in_millimetres(at["distance_chance"]), limited(at, "history_difference", in_millimetres),
-                str(int(at["common"])), " / ".join(map(in_millimetres, floors)), _seconds(at["parting_time"], case),
+                str(int(at["common"])), " / ".join(map(in_millimetres, floors)),
+                _seconds(at["parting_time"], stripe.case),
             ))  # fmt: skip
     return Table(
         "Pairs of models. Distance: of the ensembles; chance: the distance that 95 of 100 random divisions of the same "
@@ -92,12 +93,12 @@ def pairs_table(content):
 def two_levels_table(content):
     """Mean displacement by each model with fewer samples than rigid NSCD, alone and with its help; None without any."""
     rows = []
-    for case in content.cases.values():
-        for model in case.responses:
-            at = case.differences.sel(model=model)
+    for stripe in content.stripes:
+        for model in stripe.responses:
+            at = stripe.differences.sel(model=model)
             if np.isfinite(at["two_level_peak"]):
                 rows.append((
-                    case.name, model_label(model), str(int(at["counted"])), millimetres(at["mean_peak"]),
+                    stripe.name, model_label(model), str(int(at["counted"])), millimetres(at["mean_peak"]),
                     limited(at, "two_level_peak", millimetres), number(at["peak_correlation"]),
                     number(at["coefficient"]), number(at["variance_gain"]),
                 ))  # fmt: skip
@@ -120,14 +121,14 @@ def other_settings_table(content):
     others = [model for model in models if model != (plain := solver_of(model).name) and plain in models]
     if not others:
         return None
-    tops = [(case, top) for case in content.cases.values() for top in top_markers(case.structure).items()]
-    for (case, (body, marker)), model in product(tops, others):
-        plain, own = solver_of(model).name, case.differences.sel(marker=marker, model=model)
+    tops = [(one, top) for one in content.stripes for top in top_markers(one.case.structure).items()]
+    for (stripe, (body, marker)), model in product(tops, others):
+        plain, own = solver_of(model).name, stripe.differences.sel(marker=marker, model=model)
         pairs = (
-            (_shown(case, plain, name, marker, alone=True), limited(own, f"{name}_change", millimetres))
+            (_shown(stripe, plain, name, marker, alone=True), limited(own, f"{name}_change", millimetres))
             for name in CHANGES
         )
-        rows.append((f"{case.name}, {body}", model_label(model), str(int(own["changed"])), *chain(*pairs)))
+        rows.append((f"{stripe.name}, {body}", model_label(model), str(int(own["changed"])), *chain(*pairs)))
     heads = (f"{head} [mm]" for name in CHANGES for head in (name.capitalize(), "Change"))
     return Table(
         "One solver with other settings, at the top block of every leaf, along x relative to the slab. Peak and "

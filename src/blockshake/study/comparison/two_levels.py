@@ -77,7 +77,7 @@ def two_levels(ensembles):
     }
     many, rows = peaks.get(CHEAP), []
     for own in peaks.values():
-        helped = many is not None and own.sizes["sample"] < many.sizes["sample"]
+        helped = many is not None and 0 < own.sizes["sample"] < many.sizes["sample"]
         row = {}
         if helped and np.isfinite(own).all() and np.isfinite(many).all():
             both = [one.sel(sample=own["sample"]).to_numpy() for one in (own, many)]

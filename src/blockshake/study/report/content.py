@@ -4,11 +4,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
 import pandas as pd
 import xarray as xr
 
-from blockshake.dynamics.record_set import DrawnMotions, record_files
+from blockshake.dynamics.record_set import record_files
 from blockshake.files import content_digest, file_digest, load_json, named_file
 from blockshake.geometry.structure import Structure, load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
@@ -20,6 +19,7 @@ from blockshake.study.analyses import ANALYSES, OF_THE_PAPER
 from blockshake.study.ensembles.case_input import measured_on_clock
 from blockshake.study.ensembles.ensemble import measured_curves
 from blockshake.study.ensembles.envelope import single_figures
+from blockshake.study.ensembles.levels import at_level, levels_of
 from blockshake.study.growth import FILE
 from blockshake.study.sampling.distributions import load_distributions
 from blockshake.study.sampling.sample_parameters import has_parameter
@@ -43,15 +43,15 @@ class Response:
 
     def at(self, levels, level):
         """The samples of one level, and their statistics without histories; ``levels``: by sample."""
-        here = np.array([levels[int(sample)] == level for sample in self.samples["sample"].values])
-        samples = self.samples.isel(sample=np.flatnonzero(here))
+        samples = at_level(self.samples, levels, level)
         drift = self.envelope["largest_drift"].to_numpy()
         # whether a block still moves is known of all levels together alone
         envelope = single_figures(samples, drift).assign(still_moving=self.envelope["still_moving"])
         limits = self.limits
         if limits is not None:
             limits = limits[["value", "exceeded"]].sel(sample=samples["sample"].values)
-        return replace(self, envelope=envelope, samples=samples, limits=limits)
+        of_level = {name: getattr(self, name).sel(level=level) for name in ("sensitivity", "indices")}
+        return replace(self, envelope=envelope, samples=samples, limits=limits, **of_level)
 
 
 class Stripe(NamedTuple):
@@ -61,6 +61,17 @@ class Stripe(NamedTuple):
     case: "ReportedCase"
     level: float | None  # in the unit of the measure of intensity
     responses: dict  # str to Response; by model, those of the level
+
+    @property
+    def key(self):
+        """Name as an anchor of a page."""
+        return self.case.name if self.level is None else f"{self.case.name}-{self.level:g}"
+
+    @property
+    def differences(self):
+        """Result of `compare_models`, of the level."""
+        found = self.case.differences
+        return found if self.level is None else found.sel(level=self.level)
 
 
 @dataclass(frozen=True)
@@ -262,22 +273,8 @@ def _case(study, read, name, settings):
         marker_noise=marker_noise,
         responses=responses,
         differences=read["differences"][name, None],
-        levels=_levels(settings, study["ensemble"]["seed"], responses),
+        levels=levels_of(settings, study["ensemble"]["seed"], study["ensemble"]["size"]),
     )
-
-
-def _levels(settings, seed, responses):
-    """Level that each sample is scaled to, by sample; empty where no level has two samples or none is asked for."""
-    if settings.get("intensity") is None:
-        return {}
-    drawn = DrawnMotions.of(settings)
-    samples = {int(one) for response in responses.values() for one in response.samples["sample"].values}
-    levels = {sample: drawn.draw(sample, seed).level for sample in sorted(samples)}
-    if None in levels.values() or (
-        not drawn.intensity.levels and len(set(levels.values())) * 2 > len(levels)
-    ):
-        return {}
-    return {sample: settings["scale"] * level for sample, level in levels.items()}
 
 
 def _calibrated(stiffness_of, waves_of):

@@ -83,12 +83,12 @@ def _strongest(stripes, best):
     for name, ended in best.items():
         for model, one in ended.items():
             case = stripes[name].case
-            history = case.responses[model].sensitivity.sel(quantity="history", marker=one.marker)
+            history = stripes[name].responses[model].sensitivity.sel(quantity="history", marker=one.marker)
             if not float(history["spread"]) >= case.marker_noise or not is_known(history, "first_order"):
                 continue
             first = influences(history, "first_order")[0]
             if first.beyond_chance and not first.control:
-                shares.append((first.value, first.parameter, one.block, case.name, model))
+                shares.append((first.value, first.parameter, one.block, name, model))
     return max(shares, default=None)
 
 
@@ -120,7 +120,7 @@ def unknown(content):
         bare=bare,
         cut=_by_model(cases, lambda ended: ended.collapsed + ended.falling),
         failed=_by_model(cases, lambda ended: ended.failed),
-        chaotic=_chaotic(cases),
+        chaotic=_chaotic(content.stripes),
         unanswered=[
             name
             for name, one in parameters.items()
@@ -141,13 +141,11 @@ def _by_model(cases, count):
     ]
 
 
-def _chaotic(cases):
-    """Time by case and model at which a sample and its twin part within the window [s]."""
+def _chaotic(stripes):
+    """Time by case, or level, and model at which a sample and its twin part within the window [s]."""
     return [
-        (case.name, model, float(time))
-        for case in cases
-        for model, time in zip(
-            case.responses, case.differences["horizon"].sel(model=list(case.responses)), strict=True
-        )
-        if float(time) < case.settings["duration"]
+        (stripe.name, model, float(time))
+        for stripe in stripes
+        for model in stripe.responses
+        if (time := stripe.differences["horizon"].sel(model=model)) < stripe.case.settings["duration"]
     ]

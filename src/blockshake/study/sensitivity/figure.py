@@ -61,9 +61,12 @@ def plot_sensitivity(sensitivities, markers, noise, measure):
 
 
 def is_shown(result, markers, measure, noise):
-    """Whether a measure of a model is drawn for any of the markers: samples differ and suffice."""
+    """Whether a measure of a model is drawn: any variable's is beyond chance at any of the markers."""
     one = result.sel(quantity=SHOWN[measure][0], marker=list(markers))
-    return differs(one, noise) and is_known(one, measure)
+    if not (differs(one, noise) and is_known(one, measure)):
+        return False
+    strength = one[measure] if measure == "first_order" else abs(one[measure])
+    return bool((strength > one[f"{measure}_chance"]).any())
 
 
 def _draw_panel(axes, result, measure, noise):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.pages.rows import bodies_by_height, face_markers
-from blockshake.pages.wording import listed, millimetres, model_label, number, parameter_label, percent
+from blockshake.pages.wording import listed, millimetres, model_label, parameter_label, percent
 from blockshake.study.ensembles.envelope import STILL
 
 SHARED = 0.05  # r squared of two variables beyond which they are said to share their indices
@@ -89,27 +89,19 @@ def quiet_markers(result, markers, noise):
 
 
 def markers_by_height(case):
-    """Bodies that stand for the heights of a structure, with their markers, from the lowest up."""
+    """Three bodies at most that stand for the heights of a structure, with their markers, from the lowest up."""
     markers = face_markers(case.structure)
-    return {body: markers[body] for body in bodies_by_height(case.structure, markers)}
+    return {body: markers[body] for body in bodies_by_height(case.structure, markers, most=3)}
 
 
-def sentence(result, body, marker, noise):
+def sentence(result, body, marker):
     """Spread of a block, and the variables that explain it beyond chance, in sentences.
 
-    ``result`` from `sensitivity`; ``noise`` of a measured marker [m].
+    ``result`` from `sensitivity`, of samples that differ.
     """
     history = result.sel(quantity="history", marker=marker)
-    if not np.isfinite(history["spread"]):
-        return f"too few completed samples for a sensitivity of {body}: {int(history['used'])}."
-    spread = "(standard deviation over samples and time)"
-    if not differs(history, noise):
-        return (
-            f"the samples of {body} differ by {number(1e3 * history['spread'], 2)} mm {spread}, less than the noise of "
-            "a marker: the envelope is a line and there is nothing to explain."
-        )
-    thick = f"the samples of {body} differ by {millimetres(history['spread'])} mm {spread}."
-    words = f"{thick} {_found(history, 'first_order')}"
+    thick = f"the samples of {body} differ by {millimetres(history['spread'])} mm"
+    words = f"{thick} (standard deviation over samples and time). {_found(history, 'first_order')}"
     peak = result.sel(quantity="peak", marker=marker)
     if not is_known(peak, "rank_correlation"):
         return (

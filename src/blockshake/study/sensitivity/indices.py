@@ -12,6 +12,7 @@ from blockshake.statistics.intervals import CONFIDENCE
 from blockshake.store import load_made
 from blockshake.study.ensembles.ensemble import describe
 from blockshake.study.ensembles.envelope import BOUNDS, counted_samples
+from blockshake.study.ensembles.levels import by_level
 
 LARGEST = "largest displacement"  # of any marker along x relative to the slab
 
@@ -39,7 +40,7 @@ _DESCRIBED = {
 }
 
 
-def indices_of_case(samples, sensitivity, limits, seed):
+def indices_of_case(samples, sensitivity, limits, seed, levels):
     """`indices` of the largest displacement and of every limit state's measure, to the variables that can matter.
 
     Parameters
@@ -50,11 +51,14 @@ def indices_of_case(samples, sensitivity, limits, seed):
         File from `limit_states_of_case`, where the study has limit states.
     seed : int
         Of the design.
+    levels : dict of int to float
+        From `levels_of`.
 
     Returns
     -------
     xarray.Dataset
-        Entries of `indices` by ``output`` and, but for the two shares and ``used(output)``, by ``parameter``.
+        Entries of `indices` by ``output`` and, but for the two shares and ``used(output)``, by ``parameter``; along
+        ``level`` where there are any.
 
     Notes
     -----
@@ -62,13 +66,20 @@ def indices_of_case(samples, sensitivity, limits, seed):
     surrogate cannot follow where many fell: its shares say so.
     """
     counted, measured = counted_samples(load_made(samples)), load_made(sensitivity)
+    found = load_made(limits).sel(sample=counted["sample"].values) if limits else None
+    measured = measured.isel(level=0) if levels else measured  # a control is one at every level
+    return by_level(
+        levels, lambda of: _indices_of(of(counted), measured, None if found is None else of(found), seed)
+    )
+
+
+def _indices_of(counted, measured, found, seed):
     names = [str(name) for name in measured["parameter"].values[measured["control"].values == 0]]
     inputs = counted["parameter_value"].sel(parameter=names).transpose("sample", "parameter").to_numpy()
     peak = counted["peak"].sel(frame="slab", drop=True).max("marker").to_numpy()
     fell = np.isin(counted["status"].values, FALLEN)
     outputs = {LARGEST: np.where(fell, np.fmax(peak, np.max(peak[~fell], initial=0.0)), peak)}
-    if limits:
-        found = load_made(limits).sel(sample=counted["sample"].values)
+    if found is not None:
         outputs |= {str(name): found["value"].sel(limit=name).to_numpy() for name in found["limit"].values}
     parts = []
     for output in outputs.values():

@@ -11,12 +11,12 @@ _SHARES_SHOWN = 3  # variables of a response
 def shares(content):
     """Shapley effects and Sobol indices of every case and model; None where no case has runs enough for any."""
     rows = []
-    for case in content.cases.values():
-        for model, response in case.responses.items():
+    for stripe in content.stripes:
+        for model, response in stripe.responses.items():
             for output in response.indices["output"].values:
                 one = response.indices.sel(output=output)
                 if np.isfinite(one["left_out"]):
-                    rows.append((case.name, model_label(model), str(output), *_row(one)))
+                    rows.append((stripe.name, model_label(model), str(output), *_row(one)))
     if not rows:
         return None
     words = (

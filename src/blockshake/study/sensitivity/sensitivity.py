@@ -18,6 +18,7 @@ from blockshake.study.ensembles.ensemble import (
     moving_markers,
 )
 from blockshake.study.ensembles.envelope import counted_samples
+from blockshake.study.ensembles.levels import by_level
 from blockshake.study.sampling.sample_parameters import sample_parameters, unused_variables
 from blockshake.study.sampling.sample_table import load_design
 from blockshake.study.sensitivity.measures import (
@@ -49,16 +50,18 @@ _NAMED = {  # without a unit
 }
 
 
-def sensitivity_of_case(batches, design, model, structure, linked):
+def sensitivity_of_case(batches, design, model, structure, linked, levels):
     """`sensitivity` of a case's samples to all variables of a design, with those that cannot matter as controls.
 
-    ``batches``: files of the samples; ``design``: CSV table by sample; ``linked`` as in `sample_parameters`.
+    ``batches``: files of the samples; ``design``: CSV table by sample; ``linked`` as in `sample_parameters`;
+    ``levels`` from `levels_of`: the result is along ``level`` where there are any.
     """
     values = load_design(design)
     given = sample_parameters(values.iloc[0], load_structure(structure), linked)
     variables = list(values.columns)
     ensemble = join_batches(batches, POSES, ALONG_X)
-    return sensitivity(ensemble, variables, unused_variables(variables, model, given))
+    unused = unused_variables(variables, model, given)
+    return by_level(levels, lambda of: sensitivity(of(ensemble), variables, unused))
 
 
 def sensitivity(ensemble, variables, controls=()):
