@@ -249,10 +249,10 @@ def faults():
     found = load_json(FAULTS)
     outcomes = ", ".join(f"{count} {name}" for name, count in found["outcomes"].items())
     words = f"Tests: {outcomes}, in {found['minutes']:.0f} min, {found['cpu_minutes']:.0f} CPU min."
-    tables = [
-        markdown((head, "times"), found[key].items()) for key, head in (("done", "done"), ("lost", "lost"))
-    ]
-    return "\n\n".join([words, *tables])
+    lost = {name: times for name, times in found["lost"].items() if times}
+    kinds = sorted({name.partition(": ")[2] for name in found["lost"]})
+    after = markdown(("lost", "times"), lost.items()) if lost else f"0 in all tests: {', '.join(kinds)}."
+    return "\n\n".join([words, markdown(("done", "times"), found["done"].items()), wrapped(after)])
 
 
 def _items(sentences):
