@@ -36,11 +36,15 @@ def test_simulate_writes_a_run_file(tmp_path, capsys):
     assert run.attrs["motion_synthetic"] == 1
     said = capsys.readouterr()
     assert said.err == ""
-    words = r"largest drift (\S+) mm at \S+ s: the middle of block-\d from its place on the base, in any direction"
+    words = "; ".join(
+        rf"largest {name} (\S+) mm at \S+ s, of the mass centre of block-\d {way}"
+        for name, way in (("drift", "horizontally against the base"), ("lift", "upwards"))
+    )
     found = re.fullmatch(rf".*run\.nc: completed at 0\.1 s; {words}; took \S+ s\n", said.out)
-    drift = run["position"] - run["position"].sel(body="slab")
-    farthest = 1e3 * float(np.sqrt(((drift - drift.isel(time=0)) ** 2).sum("axis")).max())
-    assert found[1] == f"{farthest:.3g}"
+    moved = run["position"] - run["position"].sel(body="slab")
+    moved = 1e3 * (moved - moved.isel(time=0))
+    assert found[1] == f"{float(np.hypot(moved.sel(axis='x'), moved.sel(axis='y')).max()):.3g}"
+    assert found[2] == f"{float(moved.sel(axis='z').max()):.3g}"
 
 
 def test_several_models_at_once(tmp_path, capsys):

@@ -318,8 +318,10 @@ def _simulate(options):
             options.output_rate,
         )
         with xr.open_dataset(output, decode_times=False) as run:
-            words, status, reason = ending(run, structure), run.attrs["status"], run.attrs["reason"]
+            (words, remark), status, reason = ending(run, structure), run.attrs["status"], run.attrs["reason"]
         print(f"{output}: {words}; took {time.monotonic() - begin:.3g} s", flush=True)
+        if remark:
+            log.info("remark: %s", remark)
         if status not in FINISHED:
             print(f"blockshake: {status}: {reason}", file=sys.stderr)
             code = NUMERICAL_FAILURE

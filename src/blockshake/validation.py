@@ -132,6 +132,13 @@ def _is_schema(kind):
     return isinstance(kind, type) and issubclass(kind, BaseModel)
 
 
+def called(index, item):
+    """Name of an entry of a list, a dict: its own, those of its pair, or its number."""
+    pair = item.get("pair") or item.get("bodies")
+    is_pair = isinstance(pair, (list, tuple)) and all(isinstance(one, str) for one in pair)
+    return ".".join(pair) if is_pair else str(item.get("name", index))
+
+
 def _key(location, mapping, prefix):
     return ".".join(([prefix] if prefix else []) + _words(location, mapping))
 
@@ -142,7 +149,7 @@ def _words(location, mapping):
     for part in location:
         if isinstance(place, (list, tuple)) and isinstance(part, int) and part < len(place):
             place = place[part]
-            words.append(str(place.get("name", part)) if isinstance(place, dict) else str(part))
+            words.append(called(part, place) if isinstance(place, dict) else str(part))
         else:
             place = place.get(part) if isinstance(place, dict) else None
             words.append(str(part))

@@ -237,6 +237,26 @@ def test_a_parameter_that_the_structure_lacks_is_an_error(path, key, message):
     assert str(error.value).startswith(f"{path}: {message}")
 
 
+@pytest.mark.parametrize(
+    "key",
+    [
+        "friction.concrete.foundation",
+        "friction.foundation.concrete",
+        "friction.foundation.concrete.coefficient",
+        "joints.block-2.block-1.friction_factor",
+        "bodies.block-2.position.z",
+        "shapes.block.box.y",
+        "materials.concrete.density",
+        "restitution",
+    ],
+)
+def test_a_wrong_value_names_the_key_as_it_was_given(key):
+    with pytest.raises(InputError) as error:
+        load_structure("configuration-1", {key: "abc"})
+    assert error.value.key == key
+    assert error.value.expected.endswith("valid number, not 'abc'")
+
+
 def test_an_unknown_name_lists_the_shipped_ones():
     with pytest.raises(
         InputError, match="configuration-9: expected a structure file or one of configuration-1, "

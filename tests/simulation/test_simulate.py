@@ -138,6 +138,8 @@ def test_parameters_go_where_they_belong():
     [
         ({"ls_dem.nodes": 3}, "ls_dem.nodes: expected one of ls_dem."),
         ({"ls_dem.node_spacing": -1.0}, "ls_dem.node_spacing"),
+        # of the other solver too
+        ({"nscd.theta": "abc"}, "nscd.theta: input should be a valid number"),
     ],
 )
 def test_wrong_parameters_are_named(parameters, words):

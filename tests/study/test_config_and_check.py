@@ -201,12 +201,24 @@ def test_check_says_what_a_good_file_is(monkeypatch):
     monkeypatch.chdir(ROOT)
     assert "3 blocks of 22091 kg" in check("configuration-1")
     assert "9 blocks" in check("config/structures/configuration-3.yaml")
-    assert "3 of 0.8 x 2.4 x 1.6 m, 7364 kg, height over width 2" in check("configuration-1")
+    assert "3 of 0.8 x 2.4 x 1.6 m, 7364 kg, height over width along x 2\n" in check("configuration-1")
+    assert "3 blocks from block-1 up: mass centre at x 0 m, 2.4 m above the foot" in check("configuration-1")
     assert "a motion of 25 s, given as acceleration; peaks along x: " in check("alkion")
     said = check("config/study.yaml")
     assert said.startswith(
         "a study of 4 cases by ls-dem (50 samples), nscd-rigid (50 samples), nscd-elastic (3 to 6 samples), "
     )
+
+
+def test_slenderness_is_along_x_and_to_both_sides_of_an_eccentric_mass(make_mapping):
+    """A block that is thin across the shaking: its width along x counts; the mass centre is 0.1 m towards +x."""
+    body = {"name": "plate", "shape": "plate", "position": [0.0, 0.0, 0.5], "mass_offset": [0.1, 0.0, 0.0]}
+    said = check(load_structure(make_mapping([body], shapes={"plate": {"box": [1.0, 0.2, 1.0]}})))
+    assert "height over width along x 0.83 to -x and 1.2 to +x" in said
+    tower = [{**body, "mass_offset": [0.0, 0.0, 0.0]}, {**body, "name": "upper", "position": [0.0, 0.0, 1.5]}]
+    said = check(load_structure(make_mapping(tower, shapes={"plate": {"box": [1.0, 0.2, 1.0]}})))
+    assert "2 blocks from plate up: mass centre at x 0.05 m, 1 m above the foot, " in said
+    assert said.splitlines()[-1].endswith("height over width along x 1.8 to -x and 2.2 to +x")
 
 
 @pytest.mark.parametrize("text", ["a: 1\n", "- 1\n", "a: [\n"])

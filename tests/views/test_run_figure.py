@@ -95,7 +95,9 @@ def test_a_structure_is_shown_with_names_and_joints(tower):
     front, side, _ = figure.axes
     assert {text.get_text() for text in front.texts} == set(tower.body_names)
     assert (front.get_xlabel(), front.get_ylabel(), side.get_xlabel()) == ("x [m]", "z [m]", "y [m]")
-    joints = front.lines[0]
+    joints, centres = front.lines[:2]
+    np.testing.assert_allclose(centres.get_ydata(), np.arange(12.0) + 0.5, atol=1e-9)
+    assert centres.get_label() == "mass centres"
     np.testing.assert_allclose(joints.get_ydata(), np.arange(12.0), atol=1e-9)
     assert joints.get_label() == "12 joints found"
     assert figure.get_suptitle() == "test: 12 blocks"

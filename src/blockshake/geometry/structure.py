@@ -2,6 +2,7 @@
 
 import copy
 from collections.abc import Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -117,9 +118,8 @@ class Structure(Shown):
         if not parameters:
             return self
         mapping = self.file.model_dump(mode="json")
-        for key, value in parameters.items():
-            replace_into(mapping, key, value, self.source)
-        return self.with_mapping(mapping)
+        with _keys_as_given(mapping, parameters, self.source):
+            return self.with_mapping(mapping)
 
     def with_mapping(self, mapping):
         """Structure of another mapping of a structure file; solids of shapes that it keeps are taken over."""
@@ -187,9 +187,20 @@ def load_structure(source: StructureSource, parameters: Mapping[str, Any] | None
     else:
         path = named_file("structures", source)
         mapping, where, folder = load_yaml(path), str(source), path.parent
-    for key, value in (parameters or {}).items():
-        replace_into(mapping, key, value, where)
-    return build_structure(mapping, where, folder)
+    with _keys_as_given(mapping, parameters or {}, where):
+        return build_structure(mapping, where, folder)
+
+
+@contextmanager
+def _keys_as_given(mapping, parameters, source):
+    """Set parameters in a mapping; a refusal of one inside names its key as it was given."""
+    given = {replace_into(mapping, key, value, source): key for key, value in parameters.items()}
+    try:
+        yield
+    except InputError as error:
+        if error.key in given:
+            raise InputError(error.where, given[error.key], error.expected) from None
+        raise
 
 
 def build_structure(mapping, source, folder, known=None):

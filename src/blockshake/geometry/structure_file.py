@@ -8,6 +8,7 @@ import numpy as np
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.schema import AXES, EXTENSION
+from blockshake.validation import called
 
 _SHORTEST_WIRE = 1e-3  # m; a shorter one has no direction
 _BEHIND = 0.02  # m, by which a face may lie behind the point given of the rod, as blocks out of place make it
@@ -19,7 +20,8 @@ _REMARKED, _REFUSED = 0.5, 3.0  # of the body's longest edge
 def replace_into(mapping, key, value, source):
     """Set one dotted key of a structure's mapping in place; pairs of materials or bodies in either order.
 
-    Part of a vector goes by its axis, as in ``bodies.NAME.mass_offset.x``.
+    Part of a vector goes by its axis, as in ``bodies.NAME.mass_offset.x``. Returns the key by which `validated` names
+    the value.
 
     Raises
     ------
@@ -35,8 +37,9 @@ def replace_into(mapping, key, value, source):
                 key,
                 "expected friction.MATERIAL.MATERIAL or friction.MATERIAL.MATERIAL.KEY of a pair in the file",
             )
-        entry[parts[3] if len(parts) == 4 else "coefficient"] = value
-        return
+        name = parts[3] if len(parts) == 4 else "coefficient"
+        entry[name] = value
+        return f"friction.{called(0, entry)}.{name}"
     if parts[0] == "joints":
         if len(parts) != 4:
             raise InputError(source, key, "expected joints.BODY.BODY.KEY")
@@ -46,7 +49,7 @@ def replace_into(mapping, key, value, source):
             entry = {"bodies": parts[1:3]}
             mapping["joints"] = [*mapping.get("joints", ()), entry]
         entry[parts[3]] = value
-        return
+        return f"joints.{called(0, entry)}.{parts[3]}"
     node = mapping
     for part in parts[:-1]:
         if isinstance(node, list):
@@ -57,13 +60,15 @@ def replace_into(mapping, key, value, source):
         if not isinstance(node, (dict, list)):
             raise InputError(source, key, f"expected a parameter of this structure; it has no '{part}' here")
     if _is_vector(node) and parts[-1] in AXES:
-        node[AXES.index(parts[-1])] = value
-        return
+        axis = AXES.index(parts[-1])
+        node[axis] = value
+        return ".".join([*parts[:-1], str(axis)])
     if not isinstance(node, dict):
         raise InputError(source, key, "expected a parameter of this structure")
     if parts[0] == "bodies" and parts[-1] == "position":  # no longer laid on another body
         node.pop("on", None), node.pop("offset", None)
     node[parts[-1]] = value
+    return ".".join(parts)
 
 
 def _is_vector(node):
@@ -79,17 +84,11 @@ def dotted_values(node, name=""):
     elif _is_vector(node):
         named = zip(AXES, node, strict=True)
     elif isinstance(node, list) and all(isinstance(item, dict) for item in node):
-        named = [(_called(index, item), item) for index, item in enumerate(node)]
+        named = [(called(index, item), item) for index, item in enumerate(node)]
     else:
         return {name: node}
     parts = [dotted_values(value, f"{name}.{key}" if name else key) for key, value in named]
     return {key: value for part in parts for key, value in part.items()}
-
-
-def _called(index, item):
-    """Name of an entry of a list: its own, those of its pair, or its number."""
-    pair = item.get("pair") or item.get("bodies")
-    return ".".join(pair) if pair else item.get("name", str(index))
 
 
 def _entry_of_pair(mapping, kind, named, parts):

@@ -64,7 +64,8 @@ def check(source: AnyPath | Structure | GroundMotion, baseline: str | float = AU
     >>> import blockshake
     >>> print(blockshake.check("my.yaml"))
     a structure of 2 blocks of 3813 kg in all, and 2 joints
-      2 of 0.6 x 1.2 x 1 m, 1907 kg, height over width 1.7
+      2 of 0.6 x 1.2 x 1 m, 1907 kg, height over width along x 1.7
+      2 blocks from block-1 up: mass centre at x 0 m, 1 m above the foot, height over width along x 3.3
     """
     if isinstance(source, Structure) or source in shipped_names("structures"):
         return _structure_line(source)

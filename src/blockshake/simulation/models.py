@@ -233,17 +233,20 @@ def split_parameters(parameters, name):
 
     asked = model_of(name)
     physical, numerical = part_parameters(parameters)
-    for key in numerical:
-        prefix, _, parameter = key.partition(".")
-        for model in MODELS.values():
-            fields = model.schema.model_fields if model.prefix == prefix else [parameter]
-            if parameter not in fields:
-                raise InputError(
-                    Argument("parameters"), key, f"expected one of {prefix}.{{{', '.join(fields)}}}"
-                )
-    prefix = f"{asked.prefix}."
-    values = {key.removeprefix(prefix): value for key, value in numerical.items() if key.startswith(prefix)}
-    return physical, validated(asked.schema, values, Argument("parameters"), asked.prefix)
+    settings = {}
+    for model in MODELS.values():
+        prefix = f"{model.prefix}."
+        values = {
+            key.removeprefix(prefix): value for key, value in numerical.items() if key.startswith(prefix)
+        }
+        if not values and model is not asked:
+            continue
+        fields = model.schema.model_fields
+        if unknown := [key for key in values if key not in fields]:
+            wrong = f"expected one of {prefix}{{{', '.join(fields)}}}"
+            raise InputError(Argument("parameters"), f"{prefix}{unknown[0]}", wrong)
+        settings[model.name] = validated(model.schema, values, Argument("parameters"), model.prefix)
+    return physical, settings[asked.name]
 
 
 def _named(path):

@@ -45,6 +45,35 @@ def carried_by(structure):
     return found
 
 
+class StandingColumn(NamedTuple):
+    """All that is held together above a driven body, by joints whose normals are up."""
+
+    bodies: np.ndarray  # indices
+    centre: np.ndarray  # float64 (3,); common mass centre at the start, world frame [m]
+    height: float  # of that centre over the middle of its joints with the driven body [m]
+    levers: (
+        np.ndarray
+    )  # float64 (2,); from that centre to the outermost edges of these joints, to -x and to +x [m]
+
+
+def columns(structure):
+    """Every `StandingColumn` of a structure, a list; none where no body is driven."""
+    pairs, centres = find_joints(structure)
+    start = rotation_matrices(structure.orientation)
+    low, high = (one[0, :, 0] for one in _reach(structure, structure.position[None], start[None]))
+    found = {}
+    for joint, (bodies, feet) in enumerate(carried_by(structure)):
+        if not bodies.size or not structure.driven[pairs[joint, 0]]:
+            continue
+        mass = structure.mass[bodies]
+        centre = mass @ structure.position[bodies] / mass.sum()
+        levers = np.array([centre[0] - low[feet].min(), high[feet].max() - centre[0]])
+        found[tuple(bodies.tolist())] = StandingColumn(
+            bodies, centre, centre[2] - centres[feet, 2].mean(), levers
+        )
+    return list(found.values())
+
+
 def overturning_margins(structure, position, turns):
     """Least margin against overturning of all that each joint carries, float64 array (n_joints,) [1].
 

@@ -14,6 +14,7 @@ from blockshake.geometry.structure_file import point_remarks
 from blockshake.pages.wording import count_words
 from blockshake.quantities import PHYSICAL, USUAL
 from blockshake.simulation.parameter_table import instances
+from blockshake.simulation.rocking import columns
 
 _FAR = 1e4  # m, from the origin: with some digits of forces lost, docs/guide/contracts.md
 # m, of the longest edge; no block of a structure or of a model test is beyond
@@ -31,7 +32,7 @@ _SMALLER = {"acceleration": "cm/s2 or mm/s2", "velocity": "cm/s or mm/s", "displ
 
 
 def structure_lines(structure):
-    """Blocks, their mass, size and slenderness, and the joints of a `Structure`; a list of str."""
+    """Blocks, their mass, size and slenderness, the joints and the columns of a `Structure`; a list of str."""
     free = np.flatnonzero(~structure.driven)
     alike = Counter(_block_words(structure, body) for body in free)
     joints = np.count_nonzero(np.triu(structure.touching))
@@ -39,7 +40,24 @@ def structure_lines(structure):
     return [
         f"a structure of {count_words(len(free), 'block')} of {weight}, and {count_words(joints, 'joint')}",
         *(f"  {count} of {words}" for words, count in alike.items()),
+        *(_column_words(structure, column) for column in columns(structure) if len(column.bodies) > 1),
     ]
+
+
+def _column_words(structure, column):
+    """Mass centre of all that stands together, and its height over width."""
+    bottom = min(column.bodies, key=lambda body: structure.position[body, 2])
+    return (
+        f"  {len(column.bodies)} blocks from {structure.body_names[bottom]} up: mass centre at x "
+        f"{column.centre[0]:.3g} m, {column.height:.3g} m above the foot, {_slenderness(column.height, column.levers)}"
+    )
+
+
+def _slenderness(height, levers):
+    """Height of a mass centre over its distance from the edges along x, which is height over width of a box."""
+    with np.errstate(divide="ignore"):
+        left, right = (f"{value:.2g}" for value in height / np.maximum(levers, 0.0))
+    return f"height over width along x {left}" + (f" to -x and {right} to +x" if left != right else "")
 
 
 def _kilograms(mass):
@@ -47,13 +65,13 @@ def _kilograms(mass):
 
 
 def _block_words(structure, body):
-    """Size, mass and slenderness of a block as it stands."""
+    """Size, mass and slenderness of a block as it stands, about its mass centre."""
     solid = structure.solid(body)
     turned = solid.vertices @ rotation_matrices(structure.orientation[body]).T
     length, depth, height = np.ptp(turned, axis=0)
     return (
         f"{length:.3g} x {depth:.3g} x {height:.3g} m, {_kilograms(structure.mass[body])}, "
-        f"height over width {height / min(length, depth):.2g}"
+        + _slenderness(-turned[:, 2].min(), np.array([-turned[:, 0].min(), turned[:, 0].max()]))
     )
 
 

@@ -25,8 +25,8 @@ def plot_understood(structure, width=_WIDTH):
     Where a block is hidden from the front and from the side, every leaf of a wall is drawn alone from the side, and a
     structure whose joints hold all its blocks together from the other side too. Blocks have the colour of their
     material, driven bodies are grey; a name stands on every block that is seen where the block is large enough;
-    diamonds are the joints: pairs nearer than 0.1 mm. In all views but that in space, sensors on hidden faces are drawn
-    too. ``width``: of the figure [m of paper].
+    diamonds are the joints: pairs nearer than 0.1 mm, crosses the mass centres. In all views but that in space, sensors
+    on hidden faces are drawn too. ``width``: of the figure [m of paper].
     """
     views = _views(structure)
     ends = [scene.extent(structure.position[None], structure.orientation[None]) for *_, scene in views]
@@ -56,6 +56,9 @@ def plot_understood(structure, width=_WIDTH):
         _draw_names(axes, scene, structure, scale)
         at = scene.seen(middles[[scene.shown.issuperset(pair) for pair in pairs.tolist()]])
         axes.plot(at[:, 0], at[:, 1], "D", color=RED, markersize=2.5, label=f"{len(pairs)} joints found")
+        free = [body for body in sorted(scene.shown) if not structure.driven[body]]
+        at = scene.seen(structure.position[free])
+        axes.plot(at[:, 0], at[:, 1], "+", color=DARK_GREY, markersize=4.0, label="mass centres")
         _draw_sensors(axes, scene, structure)
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower right")
     blocks = int((~structure.driven).sum())
