@@ -51,6 +51,8 @@ PHYSICAL = (
     Quantity("bodies.BODY.angular_velocity", "rad/s", "angular velocity at the start", "structure file"),
     Quantity("bodies.BODY.offset", "m", "shift of a body laid `on` another, along x and y", "structure file"),
     Quantity("shapes.SHAPE.box", "m", "edge lengths of a box", "structure file"),
+    Quantity("shapes.SHAPE.cylinder.diameter", "m", "diameter of a cylinder", "structure file"),
+    Quantity("shapes.SHAPE.cylinder.height", "m", "height of a cylinder", "structure file"),
     Quantity("shapes.SHAPE.chamfer", "m", "leg of the 45-degree chamfer of a box", f"{_PAPER}, section LS-DEM"),
     Quantity("shapes.SHAPE.hollow", "m", "depth of the middle of each face below its rim", "docs/theory/rocking.md"),
     Quantity("stoppers.INDEX.gap", "m", "clearance of a stopper, counted from 0", "structure file"),

@@ -72,7 +72,7 @@ def _set(mapping, path, value):
         (("bodies", 2, "position"), [0.0, 0.0, 2.395],
          "bodies.upper.position: overlaps lower by 5 mm; expected at most 1 mm"),
         (("shapes", "block", "mesh"), "a.stl",
-         "shapes.block: expected either box (three edge lengths) or mesh (a file)"),
+         "shapes.block: expected either box (three edge lengths), cylinder or mesh (a file)"),
         (("materials", "stone", "density"), "heavy", "materials.stone.density: "),
         (("materials", "stone", "density"), float("nan"), "materials.stone.density: "),
         (("materials", "stone", "density"), "2400",

@@ -16,7 +16,7 @@ from wrong_keys import BESIDE, CAMPAIGN, EXEMPT, ROWS, STUDY, TURNED, write_file
 
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
-from blockshake.geometry.schema import StructureFile
+from blockshake.geometry.schema import Array, Cylinder, StructureFile
 from blockshake.measurement.campaigns.campaign import CampaignFile
 from blockshake.own_files.check import check
 from blockshake.own_files.import_map import ImportMap
@@ -28,6 +28,9 @@ from blockshake.virtual.settings import VirtualCampaign, load_settings
 # keys that exclude others of the good files, or that `extend-study` writes: tested beside what they are for
 ELSEWHERE = (
     "shapes.*.mesh",
+    *(f"shapes.*.cylinder.{key}" for key in Cylinder.model_fields),
+    "bodies.*.steps",
+    *(f"bodies.*.array.{key}" for key in Array.model_fields),
     "bodies.*.on",
     "bodies.*.offset",
     "tests.*.outcome",

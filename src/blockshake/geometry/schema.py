@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, model_serializer, model_validator
 
-from blockshake.validation import Finite, Fraction, NotNegative, Positive, Strict
+from blockshake.validation import Finite, Fraction, NotNegative, Positive, Strict, Whole
 
 AXES = ("x", "y", "z")  # order of every vector
 SIGNED_AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
@@ -17,6 +17,7 @@ Modulus = Annotated[Finite, Field(ge=1.0, le=1e15)]
 Velocities = tuple[*[Annotated[Finite, Field(ge=-1e4, le=1e4)]] * 3]
 AngularVelocities = tuple[*[Annotated[Finite, Field(ge=-1e4, le=1e4)]] * 3]
 Accelerations = tuple[*[Annotated[Finite, Field(ge=-1e4, le=1e4)]] * 3]
+Copies = Annotated[Whole, Field(ge=1, le=1000)]
 Name = Annotated[str, Field(min_length=1, pattern=r"^[^\s./]+$")]
 
 
@@ -41,8 +42,18 @@ class Material(Strict):
     )
 
 
+class Cylinder(Strict):
+    """A cylinder about the body's z, as the upright prism of its volume on a regular polygon."""
+
+    diameter: Positive = Field(description="of the cylinder [m]")
+    height: Positive = Field(description="along body z [m]")
+    sides: Annotated[Whole, Field(ge=8, le=64, multiple_of=4)] = Field(
+        24, description="of the polygon, which shows a flat side to body x and y; `check` tells its errors"
+    )
+
+
 class Shape(Strict):
-    """A box by its full edge lengths, chamfered or sharp, or a closed triangulated mesh."""
+    """A box by its full edge lengths, chamfered or sharp, a cylinder, or a closed triangulated mesh."""
 
     box: tuple[Positive, Positive, Positive] | None = Field(
         None, description="edge lengths along body x, y, z [m]"
@@ -51,21 +62,37 @@ class Shape(Strict):
     hollow: NotNegative = Field(
         0.0, description="depth of the middle of each face of a box below the face's perimeter [m]"
     )
+    cylinder: Cylinder | None = Field(
+        None,
+        description="as a prism; none of a box or a mesh",
+        exclude_if=lambda given: given is None,  # a structure without any keeps its digest
+    )
     mesh: str | None = Field(None, description="file of a closed triangulated surface, coordinates in m")
 
     @model_validator(mode="after")
     def _one_kind(self):
-        if (self.box is None) == (self.mesh is None):
-            raise ValueError("expected either box (three edge lengths) or mesh (a file)")
-        if self.mesh is not None and self.chamfer:
+        if sum(kind is not None for kind in (self.box, self.cylinder, self.mesh)) != 1:
+            raise ValueError("expected either box (three edge lengths), cylinder or mesh (a file)")
+        if self.box is None and self.chamfer:
             raise ValueError("expected a chamfer on a box only")
-        if self.mesh is not None and self.hollow:
+        if self.box is None and self.hollow:
             raise ValueError("expected hollow faces of a box only")
         if self.box is not None and 2.0 * self.chamfer >= min(self.box):
             raise ValueError("expected a chamfer below half the smallest edge length")
         if self.box is not None and self.hollow > 0.01 * min(self.box):
             raise ValueError("expected a hollow of at most a hundredth of the smallest edge length")
         return self
+
+
+class Array(Strict):
+    """Copies of a body in courses, each laid on the course below: a column, a row or a wall."""
+
+    counts: tuple[Copies, Copies, Copies] = Field(description="of the copies along x, y and z")
+    bond: Fraction = Field(
+        0.0,
+        description="shift along x of every second course, in widths of the body: 0.5 in a running bond [1]",
+    )
+    gap: NotNegative = Field(0.0, description="between neighbours of a course [m]")
 
 
 class Body(Strict):
@@ -86,6 +113,16 @@ class Body(Strict):
     offset: Vector | None = Field(
         None,
         description="of a body laid `on` another: of its centroid from the other's along x and y, and gap along z [m]",
+        exclude_if=lambda given: given is None,
+    )
+    steps: tuple[Finite, Finite] | None = Field(
+        None,
+        description="of a body laid `on` another: further offset along x and y, in widths of this body [1]",
+        exclude_if=lambda given: given is None,
+    )
+    array: Array | None = Field(
+        None,
+        description="of a body laid `on` another: copies NAME-1, NAME-2 and so on, course by course from below",
         exclude_if=lambda given: given is None,
     )
     orientation: Quaternion = Field(
@@ -116,8 +153,9 @@ class Body(Strict):
     def _has_one_place(self):
         if (self.position is None) == (self.on is None):
             raise ValueError("expected either position, or on with the name of a body below")
-        if self.offset is not None and self.on is None:
-            raise ValueError("expected no offset of a body with a position")
+        for name in ("offset", "steps", "array"):
+            if getattr(self, name) is not None and self.on is None:
+                raise ValueError(f"expected no {name} of a body with a position")
         return self
 
     @model_serializer(mode="wrap")
@@ -125,7 +163,7 @@ class Body(Strict):
         """A place that follows from a body below is no part of the file."""
         stated = serialize(self)
         if self.on is not None:
-            del stated["position"]
+            stated.pop("position", None)
         return stated
 
 

@@ -12,7 +12,8 @@ import trimesh
 
 from blockshake.errors import InputError
 from blockshake.files import AnyPath, content_digest, load_yaml, named_file
-from blockshake.geometry.laying import laid
+from blockshake.geometry.cylinder import prism_vertices
+from blockshake.geometry.laying import laid, spread
 from blockshake.geometry.mass_offset import check_offset, offset_inertia, offset_solid, stated_inertia
 from blockshake.geometry.meshes.mesh_file import read_mesh
 from blockshake.geometry.overlap import depths_of_pairs, near_pairs
@@ -187,6 +188,7 @@ def load_structure(source: StructureSource, parameters: Mapping[str, Any] | None
     else:
         path = named_file("structures", source)
         mapping, where, folder = load_yaml(path), str(source), path.parent
+    mapping = spread(mapping, where)
     with _keys_as_given(mapping, parameters or {}, where):
         return build_structure(mapping, where, folder)
 
@@ -216,7 +218,7 @@ def build_structure(mapping, source, folder, known=None):
     known : dict of str to (Shape, Solid), optional
         Solids by the name of their shape: one that has not changed is taken over.
     """
-    file = validated(StructureFile, mapping, source)
+    file = validated(StructureFile, spread(mapping, source), source)
     check_names(file, source)
     solids = {}
     for name, shape in file.shapes.items():
@@ -251,8 +253,11 @@ def build_structure(mapping, source, folder, known=None):
 
 
 def _solid(name, shape, source, folder):
-    if shape.box is not None:
-        polyhedron = convex_polyhedron(box_vertices(shape.box, shape.chamfer))
+    if shape.mesh is None:
+        round_one = shape.cylinder
+        polyhedron = convex_polyhedron(
+            box_vertices(shape.box, shape.chamfer) if round_one is None else prism_vertices(round_one)
+        )
         vertices, faces = polyhedron.vertices, triangles(polyhedron)
         return Solid(vertices, faces, polyhedron, mass_properties(vertices, faces))
     vertices, faces = read_mesh(folder, shape.mesh, source, f"shapes.{name}.mesh")

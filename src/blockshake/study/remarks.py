@@ -7,6 +7,7 @@ import numpy as np
 from blockshake.dynamics.intensity import acceleration_segments, motion_figures
 from blockshake.dynamics.load_motion import provenance
 from blockshake.dynamics.motion import PITCH
+from blockshake.geometry.cylinder import prism_errors
 from blockshake.geometry.overlap import depths_of_pairs, near_pairs
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import DEEPEST_OVERLAP, START_TOLERANCE
@@ -41,6 +42,11 @@ def structure_lines(structure):
         f"a structure of {count_words(len(free), 'block')} of {weight}, and {count_words(joints, 'joint')}",
         *(f"  {count} of {words}" for words, count in alike.items()),
         *(_column_words(structure, column) for column in columns(structure) if len(column.bodies) > 1),
+        *(
+            f"  {name} is a prism of {shape.cylinder.sides} sides: {_prism_words(shape.cylinder.sides)}"
+            for name, shape in structure.file.shapes.items()
+            if shape.cylinder
+        ),
     ]
 
 
@@ -58,6 +64,14 @@ def _slenderness(height, levers):
     with np.errstate(divide="ignore"):
         left, right = (f"{value:.2g}" for value in height / np.maximum(levers, 0.0))
     return f"height over width along x {left}" + (f" to -x and {right} to +x" if left != right else "")
+
+
+def _prism_words(sides):
+    errors = prism_errors(sides)
+    return (
+        f"the cylinder's volume, its radius {100 * errors.narrow:+.2g} to {100 * errors.wide:+.2g} %, its inertia "
+        f"{100 * errors.inertia:+.2g} %; on its side it rolls only above {np.degrees(errors.slope):.2g} degrees"
+    )
 
 
 def _kilograms(mass):

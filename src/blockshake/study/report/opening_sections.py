@@ -157,12 +157,20 @@ def structures(content):
     return Section("Structures", "structures", tuple(blocks))
 
 
+def _size_words(shape):
+    if shape.box:
+        return " x ".join(f"{edge:g}" for edge in shape.box)
+    if shape.cylinder:
+        return f"cylinder {shape.cylinder.diameter:g} x {shape.cylinder.height:g}"
+    return f"mesh {shape.mesh}"
+
+
 def _bodies_table(structure, names):
     """Bodies of a structure with size, material and mass; ``names``: of its cases."""
     rows = []
     for body, mass in zip(structure.file.bodies, structure.mass, strict=True):
         shape = structure.file.shapes[body.shape]
-        size = " x ".join(f"{edge:g}" for edge in shape.box) if shape.box else f"mesh {shape.mesh}"
+        size = _size_words(shape)
         rows.append((
             body.name + (" (driven)" if body.driven else ""), size, f"{shape.chamfer:g}", body.material,
             f"{body.density or structure.file.materials[body.material].density:g}", f"{mass:.0f}",
