@@ -1,8 +1,8 @@
-"""Real measurements through the whole loop, and the page docs/results/measured.md that tells of them.
+"""Real measurements through the whole loop, and their part of the page docs/results/measured.md.
 
 ``python bench/measured.py SHARED [--halves 10]`` makes campaigns of the published sets that lie in SHARED/measured by
-``examples/measured_flights.py``, diagnoses each as a user would, decides on further random halves, and writes the page
-with its figures. A set that is not there is left out, and the page says so.
+``examples/measured_flights.py``, diagnoses each as a user would, decides on further random halves, and writes its part
+of the page with the figures. A set that is not there is left out.
 """
 
 import argparse
@@ -60,26 +60,32 @@ STATED_NOISE = {"square-drops": 5e-5}  # m, of a coordinate, as the data's READM
 PUBLISHED = (
     "Acosta, Yang and Posa (2022, IEEE RA-L 7(3), arXiv:2110.00541) report for 550 tosses, each simulator with "
     "its own fit, 13.5 +- 8.2 % of the width and 16.5 +- 20.0 degrees (Drake), 14.9 +- 8.9 % and 16.5 +- 20.2 "
-    "degrees (Bullet), 25.1 +- 10.8 % and 21.7 +- 21.4 degrees (MuJoCo), in lengths and from starts as recorded. "
-    "The paper was not at hand; the figures are as two public repositories quote them."
+    "degrees (Bullet), 25.1 +- 10.8 % and 21.7 +- 21.4 degrees (MuJoCo), as two public repositories quote them."
 )
 
 
 def main(arguments):
-    """Write the page."""
+    """Write the part of the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("shared", type=Path)
     parser.add_argument(
         "--halves", type=int, default=10, help="random halves that are decided on beside the first"
     )
     options = parser.parse_args(arguments)
-    parts = [_head(), made_by()]
+    parts = [made_by()]
     with tempfile.TemporaryDirectory() as folder:
         for name in SETS:
             source = options.shared / "measured" / name
             if source.is_dir():
                 parts.append(_part(name, source, Path(folder), options.halves))
-    write_text(PAGE, wrapped("\n\n".join(parts)) + "\n")
+    put_section("flights", "\n\n".join(parts))
+
+
+def put_section(name, text):
+    """Put a part of the page that a command writes in place of the one before."""
+    begin, end = (f"<!-- {name}: {word} -->" for word in ("begin", "end"))
+    before, _, rest = PAGE.read_text(encoding="utf-8").partition(begin + "\n")
+    write_text(PAGE, f"{before}{begin}\n{wrapped(text)}\n{end}{rest.partition(end)[2]}")
 
 
 def made_by():
@@ -101,22 +107,6 @@ def wrapped(text):
             else textwrap.wrap(line, 99, subsequent_indent=after, break_on_hyphens=False)
         )
     return "\n".join(lines)
-
-
-def _head():
-    return (
-        "# Real measurements\n\n"
-        "Apart from the two [granite rocks](granite-rocks.md), everything else that this program diagnoses in its"
-        " tests is synthetic. This page tells of measurements of others, as the tool answered: under each "
-        "heading, all but the description of the set, what others published, and the captions is computed. The "
-        "data are not part of the project. The command is\n\n"
-        "```\npython bench/measured.py SHARED\n```\n\n"
-        "It makes a campaign of each set by `examples/measured_flights.py`, half of the tests open and half "
-        "sealed, and runs `blockshake diagnose --effort quick` on it. A third of the published tests was not at "
-        "hand. Free flight is judged first: Newton's second law of a body that touches nothing tests gravity, "
-        "lengths, drag and mass centre before any contact. See [diagnosis of free "
-        "flight](../theory/free-flight.md) for the equations."
-    )
 
 
 def make_campaign(name, source, target, seed):
@@ -147,18 +137,17 @@ def _part(name, source, folder, halves):
         for seed in range(2, 2 + halves)
     ]
     lines = [
-        f"## {title}, {datetime.date.today().isoformat()}", about,
+        f"### {title}, {datetime.date.today().isoformat()}", about,
         f"{len(decision.tests)} open and {gain.sizes['test']} predicted sealed tests. The verdict: "
         f"**{verdict.decision}** ({verdict.word}).",
         "\n".join(f"- {line}" for line in causes_in_words(decision, TITLES)),
         f"![acceleration beyond gravity over velocity]({name}-flights.png)",
         *_noise(name, evidence.attrs["noise"]),
-        "Beside it the tool says:", "\n".join(f"- {line}." for line in verdict.caveats),
         _gains(load_json(output / "verdict.json")),
         "\n".join([_errors(gain, width), _started_again(campaign, decision, gain, width)]),
         f"![errors on sealed tests]({name}-errors.png)",
         _of_halves(others),
-        impacts_table(name, source, evidence),
+        *impacts_table(name, source, evidence),
     ]  # fmt: skip
     if name == "cube-tosses":
         lines.append(PUBLISHED)

@@ -1,8 +1,8 @@
-"""Rocks that fell or stood on a shake table through the whole loop, and the page docs/results/granite-rocks.md.
+"""Rocks that fell or stood on a shake table through the whole loop, and their part of docs/results/measured.md.
 
 ``python bench/measured_rocks.py SHARED FOLDER`` makes a campaign of each rock in SHARED/measured/granite-rocks by
 ``examples/measured_rocks.py``, diagnoses it as a user would, has LS-DEM simulate every fourth batch by the structure
-file's model, and writes the page with its figures. Runs lie in FOLDER: a killed command goes on there.
+file's model, and writes its part of the page. Runs lie in FOLDER: a killed command goes on there.
 """
 
 import datetime
@@ -14,48 +14,33 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import xarray as xr
-from measured import causes_in_words, made_by, wrapped
+from measured import PAGE, causes_in_words, made_by, put_section
 
 import blockshake
 from blockshake.diagnosis.answer.decision import load_decision
 from blockshake.diagnosis.outcomes.decide import CAUSES, fell_in
 from blockshake.diagnosis.outcomes.figure import plot_fragility, plot_survival
 from blockshake.diagnosis.outcomes.runs import BATCH, simulate_outcomes
-from blockshake.diagnosis.outcomes.section import MODELS_IN_WORDS, balanced_accuracy, reliability
+from blockshake.diagnosis.outcomes.section import MODELS_IN_WORDS, balanced_accuracy
 from blockshake.effects.registry import title_of
-from blockshake.files import load_json, write_text
+from blockshake.files import load_json
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.pages.drawing import save_picture
 from blockshake.sources import script_sources, source_digest
 from blockshake.store import Store
 
 ROOT = Path(__file__).parents[1]
-PAGE = ROOT / "docs" / "results" / "granite-rocks.md"
 ROCKS = ("SP1", "SP2")
 TITLES = {name: title_of(name) for name in CAUSES}
 _ALIKE = 0.1  # by which the peaks of a record may differ that is run again
 _EVERY = 4  # batch is simulated by LS-DEM
-HEAD = (
-    "# Granite rocks on a shake table\n\n"
-    "Two scanned granite rocks of 353 kg each stood on a shake table under the recorded motions of hundreds of tests. "
-    "It is known which motions threw each rock down, and nothing else. All but the description of the set and the "
-    "captions is computed; the data are not part of the project (GPL-3.0, published with the scans and the table's "
-    "motions). The command is\n\n"
-    "```\npython bench/measured_rocks.py SHARED FOLDER\n```\n\n"
-    "It makes a campaign of each rock by `examples/measured_rocks.py`: the convex hull of the scan in its resting "
-    "pose, the mass centre of the closed scan where there is one, the table's acceleration from its displacement and "
-    "accelerometer, friction 0.6. One half of the ground motions is open with all its tests, the other is sealed. "
-    "`blockshake diagnose --effort quick` simulates every test by four models of rigid NSCD and reads the open "
-    "outcomes alone "
-    "([diagnosis of outcomes](../theory/outcomes.md))."
-)
 
 
 def main(shared, folder):
-    """Write the page."""
-    parts = [HEAD, made_by()]
+    """Write the part of the page."""
+    parts = [made_by()]
     parts += [_part(rock, shared / "measured" / "granite-rocks", folder) for rock in ROCKS]
-    write_text(PAGE, wrapped("\n\n".join(parts)) + "\n")
+    put_section("rocks", "\n\n".join(parts))
 
 
 def _part(rock, source, folder):
@@ -89,34 +74,29 @@ def part(rock, folder, output, store, repeats):
     """Lines on one rock, from the results of its diagnosis in ``output``; LS-DEM's runs are kept in ``store``."""
     campaign, verdict = load_campaign(folder), load_json(output / "verdict.json")
     decision = load_decision(output / "decision.json")
-    gain, evidence = (xr.load_dataset(output / f"{name}.nc") for name in ("gain", "evidence"))
+    gain = xr.load_dataset(output / "gain.nc")
     save_picture(PAGE.parent / f"{rock.lower()}-survival.png", plot_survival, gain)
     save_picture(PAGE.parent / f"{rock.lower()}-fragility.png", plot_fragility, gain)
     fell = fell_in(campaign, list(campaign.open))
     lines = [
-        f"## {rock}, {datetime.date.today().isoformat()}",
+        f"### {rock}, {datetime.date.today().isoformat()}",
         f"{len(fell)} open tests, of which {fell.sum()} ended in a fall, and {gain.sizes['test']} sealed tests, of "
         f"which {int(gain['fell'].sum())} did. The verdict: **{verdict['decision']}** ({verdict['word']}).",
         "\n".join(f"- {line}" for line in causes_in_words(decision, TITLES)) or "- no cause is named",
-        "Beside it the tool says:", "\n".join(f"- {line}." for line in verdict["caveats"]), repeats,
-        _scores(gain, "sealed"), _scores(evidence, "open"), _gains(verdict),
+        repeats, _scores(gain), _gains(verdict),
         f"![tests that the rock survived, and the predicted chance of a fall]({rock.lower()}-survival.png)",
         f"![share of falls over the motion's peaks]({rock.lower()}-fragility.png)",
-        "\n".join([
-            "| predicted chance of a fall | sealed tests | falls | share, interval of 95 % |",
-            "| --- | --- | --- | --- |", *(f"| {' | '.join(row)} |" for row in reliability(gain)),
-        ]),
         _other_solver(campaign, store),
     ]  # fmt: skip
     return "\n\n".join(lines)
 
 
-def _scores(scores, which):
+def _scores(scores):
     fell = scores["fell"].to_numpy() == 1
     rows = [(words, scores["chance"].sel(model=model).to_numpy()) for model, words in MODELS_IN_WORDS.items()]
     rows.insert(0, ("the structure file's model, nscd-rigid", scores["simulated"].to_numpy()[0]))
     return "\n".join([
-        f"| model, {which} tests | right falls | false falls | missed falls | balanced accuracy | Brier score |",
+        "| model, sealed tests | right falls | false falls | missed falls | balanced accuracy | Brier score |",
         "| --- | --- | --- | --- | --- | --- |", *(_row(words, chance, fell) for words, chance in rows),
     ])  # fmt: skip
 
