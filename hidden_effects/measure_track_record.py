@@ -26,10 +26,13 @@ from oracle_gain import gains_of, response_gains, write_gains
 
 from blockshake.diagnosis import steps
 from blockshake.diagnosis.answer.decision import freeze, write_decision
+from blockshake.diagnosis.nominal.nominal_model import MODELS
+from blockshake.diagnosis.nominal.plan import plan_diagnosis
 from blockshake.diagnosis.verdict.track_record import WHOLE
 from blockshake.diagnosis.verdict.verdict import load_verdict, write_verdict
 from blockshake.files import load_json, write_json
 from blockshake.parity.parity import load_parity
+from blockshake.store import Store
 
 ENVIRONMENT = {
     **os.environ,
@@ -170,9 +173,13 @@ def _diagnose(results, case):
     out.mkdir(parents=True, exist_ok=True)
     files = SimpleNamespace(
         parity=str(out / "parity.json"), decision=str(out / "decision.json"), frozen=str(out / "frozen.json"),
-        ensembles=[], extended=[], gain=[],
+        ensembles=[], extended=[], gain=[], outcomes=[], clean=[],
     )  # fmt: skip
-    found = steps.decide(str(folder), ())
+    store = Store(out / "runs", "", lambda line: None)
+    for solver in MODELS if plan_diagnosis(folder, "quick").clean else ():
+        files.clean.append(str(out / f"clean-{solver}.json"))
+        write_json(files.clean[-1], steps.simulate_clean(str(folder), "quick", solver, store))
+    found = steps.decide(str(folder), (), files)
     write_json(files.parity, found.parity.as_json())
     write_decision(files.decision, found.decision)
     freeze(files.frozen, files.decision, found.decision.tests)

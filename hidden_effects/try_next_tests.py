@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 from make_case import make_case, structure_file
 
-from blockshake.diagnosis.answer.answer import ODDS
 from blockshake.diagnosis.answer.decide import decide
 from blockshake.diagnosis.answer.next_test import readings_of_cause
 from blockshake.diagnosis.answer.static_tests import expected_readings, static_tests
+from blockshake.diagnosis.answer.thresholds import ODDS
 from blockshake.diagnosis.evidence.seen_campaign import see_campaign
 from blockshake.effects.registry import EFFECTS
 from blockshake.files import load_json

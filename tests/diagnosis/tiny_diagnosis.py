@@ -15,7 +15,7 @@ from blockshake.measurement.campaigns.campaign import load_test
 from blockshake.parity.parity import check_parity
 from blockshake.store import Store
 
-TINY = plan.Effort(tests=2, draws=10, members=6, twins=2, outcomes=2)
+TINY = plan.Effort(tests=2, draws=10, members=6, twins=2, outcomes=2, clean=0)
 SOLVERS = ("ls-dem", "nscd-rigid")
 
 

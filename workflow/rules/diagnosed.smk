@@ -66,6 +66,15 @@ def ensemble_files(campaign, solvers=NULL_MODELS):
     )
 
 
+def clean_files(campaign):
+    """Evidence by chance of a campaign's open tests, by solver; none where no motion is known."""
+    return expand(
+        "results/diagnosis/{campaign}/clean/{solver}.json",
+        campaign=campaign,
+        solver=NULL_MODELS if plan(campaign).clean else [],
+    )
+
+
 def misfit_files(wildcards):
     """The misfit, at an effort that simulates anything."""
     simulated = plan(wildcards.campaign).simulated

@@ -32,6 +32,7 @@ checkpoint decide:
     input:
         tests=lambda wildcards: test_files(wildcards.campaign, "open"),
         outcomes=lambda wildcards: outcome_files(wildcards.campaign),
+        clean=lambda wildcards: clean_files(wildcards.campaign),
     output:
         parity="results/diagnosis/{campaign}/parity.json",
         decision="results/diagnosis/{campaign}/decision.json",
@@ -47,6 +48,29 @@ checkpoint decide:
         source=source_of("decide"),
     script:
         "../scripts/decide.py"
+
+
+rule simulate_clean:
+    """Open tests simulated without any cause, and the evidence of every cause in them: by chance."""
+    input:
+        tests=lambda wildcards: test_files(wildcards.campaign, "open"),
+        kernels=lambda wildcards: kernels(wildcards.solver),
+    output:
+        "results/diagnosis/{campaign}/clean/{solver}.json",
+    log:
+        "logs/diagnosis/{campaign}/simulate_clean/{solver}.log",
+    conda:
+        "../envs/blockshake.yaml"
+    resources:
+        runtime=480,
+    params:
+        folder=lambda wildcards: CAMPAIGNS[wildcards.campaign],
+        effort=EFFORT,
+        draws=lambda wildcards: plan(wildcards.campaign).clean,
+        source=lambda wildcards: source_of("simulate_clean", wildcards.solver),
+        store="results/store/diagnosis",
+    script:
+        "../scripts/simulate_clean.py"
 
 
 rule simulate_nominal:

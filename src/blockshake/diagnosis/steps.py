@@ -29,7 +29,8 @@ class DecidedCampaign(NamedTuple):
 def decide(folder, without, files=None):
     """`DecidedCampaign`: the open tests read, the faults of sensors taken out, and what acts decided.
 
-    ``files.outcomes`` are the batches of `simulate_outcomes`; a campaign with readings has none.
+    ``files.outcomes`` are the batches of `simulate_outcomes`; a campaign with readings has none. ``files.clean`` are
+    the files of `simulate_clean`, none where no motion is known.
 
     Raises
     ------
@@ -37,9 +38,11 @@ def decide(folder, without, files=None):
         No open test shows any forces.
     """
     from blockshake.diagnosis.answer.decide import decide
+    from blockshake.diagnosis.answer.thresholds import thresholds_of
     from blockshake.diagnosis.evidence.seen_campaign import see_campaign
     from blockshake.diagnosis.flight.decide import decide_flights
     from blockshake.diagnosis.outcomes.decide import decide_outcomes
+    from blockshake.files import load_json
     from blockshake.measurement.campaigns.campaign import load_campaign
     from blockshake.measurement.poses.posed_test import load_posed
     from blockshake.parity.parity import UNCHECKED
@@ -54,7 +57,8 @@ def decide(folder, without, files=None):
     if not seen.tests:
         expected = f"expected an open test whose forces can be read; {'; '.join(unseen)}"
         raise InputError(folder, "tests", expected)
-    return DecidedCampaign(seen.parity, *decide(seen.tests, without, unseen))
+    runs = [run for path in files.clean for run in load_json(path)] if files else []
+    return DecidedCampaign(seen.parity, *decide(seen.tests, without, unseen, thresholds_of(runs)))
 
 
 def simulate_nominal(folder, effort, number, solver, store):
@@ -69,6 +73,24 @@ def simulate_nominal(folder, effort, number, solver, store):
     test = list(plan.tests)[number]
     members = nominal_members(test, plan.tests[test], solver, plan.effort.draws, plan.effort.twins)
     return simulate_members(members, store)
+
+
+def simulate_clean(folder, effort, solver, store):
+    """Evidence of every cause in simulated open tests without any, by model: list of dict of str to float."""
+    from dataclasses import replace
+
+    from blockshake.diagnosis.evidence.seen_campaign import found_sensors
+    from blockshake.diagnosis.nominal.clean_runs import simulate_clean_runs
+    from blockshake.diagnosis.nominal.plan import plan_diagnosis
+    from blockshake.measurement.campaigns.open_readings import read_open_tests
+    from blockshake.measurement.sensors.accelerometers import read_channels
+
+    plan = plan_diagnosis(folder, effort)
+    readings = read_open_tests(plan.campaign, plan.open)
+    sensors = found_sensors(plan.campaign, readings)
+    planned = {name: replace(test, sensors=sensors) for name, test in plan.opened.items()}
+    channels = {name: read_channels(readings.tests[name]) for name in planned}
+    return simulate_clean_runs(planned, channels, solver, plan.clean, store)
 
 
 def simulate_outcomes(folder, effort, batch, solver, store):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from blockshake.diagnosis.answer.answer import needed_of
 from blockshake.diagnosis.answer.limits import _by_place, from_null, largest, usual_column
+from blockshake.diagnosis.answer.thresholds import by_odds
 from blockshake.diagnosis.evidence.explanation import best_of
 from blockshake.diagnosis.evidence.likelihood import Likelihood, from_rows
 from blockshake.effects.effect import Columns
@@ -31,13 +31,13 @@ def _found(likelihood, variants, size, generator):
     for _ in range(DRAWS):
         value = true + generator.standard_normal(ROWS) + likelihood.nuisances @ generator.standard_normal(1)
         drawn = Likelihood(likelihood.roots, value, likelihood.nuisances, 0.0)
-        hits += best_of(drawn, NAME, "block-1", variants).gain > needed_of(NAME)
+        hits += best_of(drawn, NAME, "block-1", variants).gain > by_odds(NAME)
     return hits / DRAWS
 
 
 def test_nine_of_ten_of_the_limit_are_seen_and_few_of_half_of_it(made):
     likelihood, variants = made
-    limit = _by_place(NAME, likelihood, {"block-1": variants}, needed_of(NAME))["block-1"]
+    limit = _by_place(NAME, likelihood, {"block-1": variants}, by_odds(NAME))["block-1"]
     generator = np.random.default_rng(5)
     deviation = np.sqrt(0.9 * 0.1 / DRAWS)
     # the noise that a fitted amplitude takes up adds half a nat to the gain in the mean

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from made_up_decision import made_up_cause
 
-from blockshake.diagnosis.answer.answer import COARSENING, ODDS
+from blockshake.diagnosis.answer.answer import COARSENING
 from blockshake.diagnosis.answer.next_test import _split, next_tests, readings_of_cause
 from blockshake.diagnosis.answer.places import joined_bodies, place_name
 from blockshake.diagnosis.answer.static_tests import distance, expected_readings, static_tests
+from blockshake.diagnosis.answer.thresholds import ODDS
 from blockshake.forces.faces import find_faces
 from blockshake.geometry.structure import load_structure
 

@@ -1,26 +1,17 @@
 """From evidences to an answer: none, a named cause, a set that cannot be told apart, a combination, or unknown."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from blockshake.diagnosis.answer.thresholds import ODDS, score_of
 from blockshake.diagnosis.evidence.explanation import mean_evidence
-from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
 from blockshake.effects.registry import EFFECTS
 
-FREE_SHARE = 0.85  # of what any force at its place would explain, that a named form must
-FREE_FORCE = "unknown-force"
-_PRIOR, _PRIOR_OUTSIDE, _PRIOR_FREE = -3.0, -3.5, -6.0
-_NEEDED = 6.0  # nats over none that are no chance: of 40 sound open cases none gained 2
-_NEEDED_OF_FREE = 20.0  # any error of the joints' model speaks for a force without a form
-_OF_FRICTION = ("weak-joint", "rate-weakening-friction", "slip-weakening-friction", "friction-asymmetry")
-_NEEDED_IN_LOOPS = 40.0  # of these: where joints make a loop, the normal force of none is known
-_NEEDED_OF_SLAB = {"turns": 8.0, "lifts": 20.0}  # outliers of one marker lift the slab
 _BESIDE_SLAB = 10.0  # nats more of a cause in the joints of a slab that has one of its own
 _BESIDE = 5.0  # nats more of a second cause in the joints
 _BESIDE_SHARE = 0.1  # of the first one's gain, beside that
-ODDS = float(np.log(20.0))  # within which causes are not told apart
 _MOST_CAUSES = 3
 COARSENING = 0.05  # share of what it explains that the form of a cause may leave unexplained
 
@@ -45,6 +36,7 @@ class Group:
     # none
     odds: dict
     gains: dict
+    asserted: bool = True  # else the evidence of the first is within what tests without any cause give
 
 
 def rank(evidence, closed=None, joined=(), known=()):
@@ -108,9 +100,7 @@ def _rival(cause, places, evidence, joined):
         if place.partition("@")[0] in group and not bodies.isdisjoint(group)
     }
     near = tuple(place for place in ordered if place in near)
-    prior = _PRIOR_OUTSIDE if cause in FORMS else _PRIOR
-    score = gain + prior if cause != FREE_FORCE else FREE_SHARE * gain + _PRIOR_FREE
-    return Rival(cause, best, gain, score, near)
+    return Rival(cause, best, gain, score_of(cause, gain), near)
 
 
 def find_causes(ranked, needed):
@@ -122,6 +112,11 @@ def find_causes(ranked, needed):
         Of the first `Rival` of every group found so far: all rivals beside them, by falling score.
     needed : callable
         Of the name of a cause and these: the gain over none from which the cause is no chance.
+
+    Notes
+    -----
+    A cause that ranks before the first one that is no chance, and whose odds over none would do, is an error that this
+    structure's own runs show: it becomes a group that is not asserted, and others are compared beside it.
     """
     groups = []
     while len(groups) < _MOST_CAUSES:
@@ -130,7 +125,10 @@ def find_causes(ranked, needed):
         strong = [one for one in rivals if one.gain > needed(one.cause, known)]
         if not strong:
             break
-        groups.append(group_of(strong[0], rivals))
+        first = next(one for one in rivals if one is strong[0] or one.score > ODDS)
+        groups.append(replace(group_of(first, rivals), asserted=first is strong[0]))
+    while groups and not groups[-1].asserted:
+        groups.pop()
     return groups
 
 
@@ -156,19 +154,7 @@ def share_of(known):
     return _BESIDE_SHARE * sum(one.gain for one in known)
 
 
-def needed_of(cause, tree=True):
-    """Gain over none from which a cause is no chance, where joints make a tree or a loop."""
-    if not tree and cause in _OF_FRICTION:
-        return _NEEDED_IN_LOOPS
-    return _NEEDED_OF_FREE if cause == FREE_FORCE else _NEEDED
-
-
-def needed_of_slab(name):
-    """Gain over none from which an effect that moves the slab is no chance."""
-    return _NEEDED_OF_SLAB["turns" if EFFECTS[name].turns else "lifts"]
-
-
-def slab_groups(explained):
+def slab_groups(explained, thresholds):
     """Pairs of the name of readings and their `Group`: of the slab's rotation and of its vertical motion.
 
     ``explained`` are `Explanation` by effect.
@@ -181,7 +167,7 @@ def slab_groups(explained):
             if getattr(EFFECTS[name], moves)
         ]
         ranked = sorted(rivals, key=lambda one: -one.gain)
-        if ranked and ranked[0].gain > _NEEDED_OF_SLAB[moves]:
+        if ranked and ranked[0].gain > thresholds.of(ranked[0].cause):
             groups.append((readings, group_of(ranked[0], ranked)))
     return groups
 

@@ -9,29 +9,31 @@ from blockshake.diagnosis.answer.answer import (
     coarsened,
     find_causes,
     needed_beside,
-    needed_of,
     rank,
     slab_groups,
     soft_gains,
 )
 from blockshake.diagnosis.answer.decision import Cause, Decision, Part
 from blockshake.diagnosis.answer.departures import departures, largest, slab_departures
-from blockshake.diagnosis.answer.explain import gather_evidence
+from blockshake.diagnosis.answer.explain import EVERY, gather_evidence
 from blockshake.diagnosis.answer.history import histories, of_last_test
 from blockshake.diagnosis.answer.limits import cannot_see, excluded_above, limits_of
 from blockshake.diagnosis.answer.next_test import next_tests
 from blockshake.diagnosis.answer.places import EVERYWHERE, joined_bodies, place_of
 from blockshake.diagnosis.answer.size import members_of, size_of
+from blockshake.diagnosis.answer.thresholds import RATE, Thresholds, by_odds
 from blockshake.diagnosis.evidence.closed_joints import closed_joints
 from blockshake.diagnosis.evidence.explanation import Fit, mean_evidence
 from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
 from blockshake.diagnosis.evidence.spin_kept import restitution_gain
+from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.impact_restitution import EFFECT as RESTITUTION
 from blockshake.effects.joint_compliance import COMPLIANCES
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
-from blockshake.effects.registry import EFFECTS
+from blockshake.effects.registry import EFFECTS, title_of
 
 _JOINTS = "joints", "joints, beside the first"
+_BY_ODDS = Thresholds()
 _NOT_SHOWN = "no departure larger than chance"
 
 
@@ -42,7 +44,7 @@ class Decided(NamedTuple):
     evidence: xr.Dataset
 
 
-def decide(seen, without=(), unseen=()):
+def decide(seen, without=(), unseen=(), thresholds=_BY_ODDS):
     """`Decided`: what the tests speak for.
 
     Parameters
@@ -53,30 +55,36 @@ def decide(seen, without=(), unseen=()):
         Effects that are left out, as if nobody had thought of them.
     unseen : sequence of str
         Lines on tests of which nothing was read.
+    thresholds : Thresholds
+        Evidence that every cause needs.
     """
     joints = {} if JOINT_COMPLIANCE.name in without else closed_joints(seen)
     closed = {name: joint.gains for name, joint in joints.items()}
     slabs = [slab_motion(test) for test in seen]
     slab = explain_slab(slabs, without)
-    of_slab = slab_groups(slab)
-    stages, groups = _in_joints(seen, gather_evidence(seen, without), closed, bool(of_slab))
+    of_slab = slab_groups(slab, thresholds)
+    stages, groups = _in_joints(seen, gather_evidence(seen, without), closed, bool(of_slab), thresholds)
     fitted, explained = _together(stages, groups)
     acting = [
-        _part(_JOINTS[min(number, 1)], group, seen, evidence, {} if number else closed)
+        _part(group, seen, evidence, {} if number else closed)
         for number, (group, evidence) in enumerate(zip(groups, fitted, strict=True))
+        if group.asserted
     ]
+    acting = [part.model_copy(update={"readings": _JOINTS[min(n, 1)]}) for n, part in enumerate(acting)]
+    explained = [one for one, group in zip(explained, groups, strict=False) if group.asserted]
     evidence, beside = stages[0], stages[1] if stages[1:] else None
-    paths = histories(evidence, beside, groups[0].rivals[0] if groups else None, seen[0])
-    if groups:
+    first = groups[0].rivals[0] if groups and groups[0].asserted else None
+    paths = histories(evidence, beside, first, seen[0])
+    if first:
         acting[0] = _with_last_sizes(acting[0], paths)
     for readings, group in of_slab:
-        acting.append(_part(readings, group, seen, None, {}, slab))
+        acting.append(_part(group, seen, None, {}, slab, readings))
     impacts = restitution_gain(seen)
-    if impacts.gain > needed_of(RESTITUTION.name) and RESTITUTION.name not in without:
+    if impacts.gain > thresholds.of(RESTITUTION.name) and RESTITUTION.name not in without:
         acting.append(_of_impacts(impacts))
     parts = tuple(sorted(acting, key=lambda part: -part.causes[0].gain))
     shown = departures(seen, evidence, explained)
-    limits = limits_of(evidence, slabs, joints, without)
+    limits = limits_of(evidence, slabs, joints, thresholds, without)
     decision = Decision(
         decision=kind_of(parts),
         parts=parts,
@@ -89,18 +97,39 @@ def decide(seen, without=(), unseen=()):
         silent=[test.name for test in seen if not len(test.rows.value)],
         n_rows=sum(len(test.rows.value) for test in seen),
         impacts=impacts.statement,
-        cannot_see=(*unseen, *cannot_see(seen)),
+        cannot_see=(
+            *unseen,
+            *_by_chance(stages[0], closed, thresholds, groups),
+            *cannot_see(seen),
+        ),
+        clean_runs=thresholds.runs,
+        thresholds={name: thresholds.of(name) for name in sorted({*EVERY, *EFFECTS} - set(without))},
         histories=paths,
     )
     return Decided(decision, shown.merge(slab_departures(seen, slabs, slab, parts)))
 
 
-def _in_joints(seen, evidence, closed, slab):
+def _by_chance(evidence, closed, thresholds, groups):
+    """Lines on causes in the joints whose odds would do, but whose evidence simulated tests without any reach."""
+    asserted = groups and groups[0].asserted
+    return [
+        f"{_title(one.cause)}: evidence of {one.gain:.0f} nats is not enough; of {thresholds.runs} simulated campaigns "
+        f"without a cause, {100.0 * RATE:.0f} % are expected above {thresholds.of(one.cause):.0f} nats"
+        for one in ([] if asserted else rank(evidence, closed))
+        if by_odds(one.cause) < one.gain <= thresholds.of(one.cause)
+    ]
+
+
+def _title(cause):
+    return FORMS[cause].title if cause in FORMS else title_of(cause)
+
+
+def _in_joints(seen, evidence, closed, slab, thresholds):
     """Lists of `Evidence`, each beside the first cause of one group more, and of `Group`; see `find_causes`.
 
     ``closed`` is as of `rank`, and ``slab`` says whether the slab's own motion has a cause.
     """
-    stages, joined, tree = [evidence], joined_bodies(seen), seen[0].tree
+    stages, joined = [evidence], joined_bodies(seen)
 
     def ranked(known):
         if not known:
@@ -112,7 +141,7 @@ def _in_joints(seen, evidence, closed, slab):
         return rank(stages[-1], {}, joined, known)
 
     def needed(cause, known):
-        return needed_of(cause, tree) + needed_beside(slab, known)
+        return thresholds.of(cause) + needed_beside(slab, known)
 
     return stages, find_causes(ranked, needed)
 
@@ -179,7 +208,7 @@ def probabilities(parts, without):
     return found
 
 
-def _part(readings, group, seen, evidence, closed, slab=None):
+def _part(group, seen, evidence, closed, slab=None, readings=_JOINTS[0]):
     causes = []
     for rival in group.rivals:
         fits, logs = _fits(rival, [rival.place], evidence, closed, slab)

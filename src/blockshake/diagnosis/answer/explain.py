@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
-from blockshake.diagnosis.answer.answer import ODDS, coarsened
+from blockshake.diagnosis.answer.answer import coarsened
 from blockshake.diagnosis.answer.places import place_name
+from blockshake.diagnosis.answer.thresholds import ODDS
 from blockshake.diagnosis.evidence.explanation import best_of
 from blockshake.diagnosis.evidence.joint_rows import JointRows
 from blockshake.diagnosis.evidence.likelihood import from_rows

@@ -3,10 +3,11 @@
 import numpy as np
 from scipy.special import logsumexp
 
-from blockshake.diagnosis.answer.answer import needed_beside, needed_of
+from blockshake.diagnosis.answer.answer import needed_beside
 from blockshake.diagnosis.answer.decision import Estimate, History
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_of
 from blockshake.diagnosis.answer.size import FORM, NINE_TENTHS, read_sizes, units_of
+from blockshake.diagnosis.answer.thresholds import by_odds
 from blockshake.diagnosis.evidence.explanation import mean_evidence
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS
@@ -81,7 +82,7 @@ def _own(evidence, first, seen, more):
         columns = [rows @ fit.mean / size for rows in fit.columns]
     name, unit = next(iter(units_of(first.cause).items()))
     found = _weighed(evidence, columns, float(fit.scales[0]))
-    needed = needed_of(first.cause) + more
+    needed = by_odds(first.cause) + more
 
     def read(amplitudes):
         return read_sizes(first.cause, fit.values, amplitudes, 0.0)[name]
@@ -104,7 +105,7 @@ def _of_sound_joints(evidence, quantity, more, rival=None):
     place = {} if best == EVERYWHERE else place_of(_OF_EDGES[1], best, evidence.tests[0].seen)
     gain, total = (float(mean_evidence([one[row] for one in found.values()])) for row in (0, 1))
     path = (gain, total, *found[best][2:])
-    made = _history(quantity, name, place, unit, path, needed_of(quantity) + more, np.asarray)
+    made = _history(quantity, name, place, unit, path, by_odds(quantity) + more, np.asarray)
     if rival is None:
         return made
     return made.model_copy(update={"beats": rival.cause}) if made.changes and total > rival.gain else None

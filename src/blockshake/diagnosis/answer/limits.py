@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import ndtri
 
-from blockshake.diagnosis.answer.answer import needed_of, needed_of_slab, soft_gains
+from blockshake.diagnosis.answer.answer import soft_gains
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_name, unmoved_joints
 from blockshake.diagnosis.evidence.explanation import best_of, mean_evidence
 from blockshake.diagnosis.evidence.slab_motion import explain_lift, slab_turns
@@ -21,7 +21,7 @@ _LIFTS = np.geomspace(1e-4, 1.0, 60)  # of the end of the prior, at which a vert
 _LOST = 0.1  # of a test, for which a motion may be unknown without a word
 
 
-def limits_of(evidence, slabs, closed, without=()):
+def limits_of(evidence, slabs, closed, thresholds, without=()):
     """Sizes from which effects would be seen in nine of ten campaigns of the same motion, by effect and place.
 
     Parameters
@@ -29,6 +29,7 @@ def limits_of(evidence, slabs, closed, without=()):
     evidence : Evidence or None
     slabs : list of SlabMotion
     closed : dict of str to ClosedJoint
+    thresholds : Thresholds
     without : sequence of str
         Effects that are left out.
 
@@ -47,15 +48,17 @@ def limits_of(evidence, slabs, closed, without=()):
     for name, effect in EFFECTS.items():
         if effect.turns and name not in without:
             variants = list(zip(*(effect.turns(slab) for slab in slabs), strict=True))
-            limits[name] = _by_place(name, slab_turns(slabs), {EVERYWHERE: variants}, needed_of_slab(name))
+            limits[name] = _by_place(name, slab_turns(slabs), {EVERYWHERE: variants}, thresholds.of(name))
         if effect.lifts and name not in without and any(len(slab.at) for slab in slabs):
-            limits[name] = {EVERYWHERE: _lifted(name, [slab for slab in slabs if len(slab.at)])}
+            limits[name] = {
+                EVERYWHERE: _lifted(name, [slab for slab in slabs if len(slab.at)], thresholds.of(name))
+            }
     if evidence is not None:
         loudest, tried = evidence.usual, {}
         for (name, place), variants in evidence.tried.variants.items():
             tried.setdefault(name, {})[place] = variants
         for name, by_place in tried.items():
-            needed = needed_of(name, evidence.tests[0].seen.tree)
+            needed = thresholds.of(name)
             if name == JOINT_COMPLIANCE.name:
                 limits[name] = _soft(loudest, by_place, needed, closed)
             else:
@@ -147,12 +150,12 @@ def _soft(likelihood, by_place, needed, closed):
     return found
 
 
-def _lifted(name, slabs):
+def _lifted(name, slabs, needed):
     """Of a vertical motion of the slab in proportion to the horizontal one: the smallest that is tried and seen."""
     deviation = float(np.sqrt(explain_lift(EFFECTS[name], slabs).best.covariance[0, 0]))
     for size in largest(name) * _LIFTS:
         gain = explain_lift(EFFECTS[name], [replace(slab, lift=size * slab.travel) for slab in slabs]).gain
-        if gain - SURELY * size / deviation > needed_of_slab(name):
+        if gain - SURELY * size / deviation > needed:
             return float(size)
     return None
 

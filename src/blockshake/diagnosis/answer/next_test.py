@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.special import ndtr
 
-from blockshake.diagnosis.answer.answer import COARSENING, ODDS
+from blockshake.diagnosis.answer.answer import COARSENING
 from blockshake.diagnosis.answer.decision import Measurement
 from blockshake.diagnosis.answer.places import place_of, unmoved_joints
 from blockshake.diagnosis.answer.static_tests import (
@@ -12,6 +12,7 @@ from blockshake.diagnosis.answer.static_tests import (
     expected_readings,
     static_tests,
 )
+from blockshake.diagnosis.answer.thresholds import ODDS
 from blockshake.diagnosis.outside.registry import FORMS
 
 _LEAST = 0.05  # share of split cases, below which a measurement is no advice

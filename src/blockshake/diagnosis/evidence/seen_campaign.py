@@ -41,12 +41,17 @@ def see_sealed(campaign):
     return _seen(campaign, read_sealed_tests(campaign), ())
 
 
-def _seen(campaign, readings, without):
+def found_sensors(campaign, readings):
+    """`Sensors` of a `Campaign` with the noise that its readings show."""
     clear = {
         name: without_outliers(test, standing(readings.structure, test))
         for name, test in readings.tests.items()
     }
-    sensors = found_noise(clear, readings.structure, campaign.sensors)
+    return found_noise(clear, readings.structure, campaign.sensors)
+
+
+def _seen(campaign, readings, without):
+    sensors = found_sensors(campaign, readings)
     parity = campaign_parity(readings, sensors, without)
     tests, unseen = [], {}
     for name, test in readings.tests.items():

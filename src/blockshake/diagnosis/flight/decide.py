@@ -6,10 +6,11 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from blockshake.diagnosis.answer.answer import Rival, find_causes, needed_of, share_of
+from blockshake.diagnosis.answer.answer import Rival, find_causes, share_of
 from blockshake.diagnosis.answer.decide import chance, kind_of, probabilities
 from blockshake.diagnosis.answer.decision import Cause, Decision, Estimate, Part
 from blockshake.diagnosis.answer.size import FORM
+from blockshake.diagnosis.answer.thresholds import by_odds
 from blockshake.diagnosis.flight.causes import CAUSES
 from blockshake.diagnosis.flight.evidence import explain, explained_share, flight_rows
 from blockshake.diagnosis.outside.registry import FORMS
@@ -62,7 +63,7 @@ def decide_flights(posed, without=()):
     beside, sound, stages = rows, [], []  # fits of every stage, by falling gain
 
     def needed(cause, known):
-        return needed_of(cause) + share_of(known)
+        return by_odds(cause) + share_of(known)
 
     def ranked(known):
         nonlocal beside
@@ -84,7 +85,7 @@ def decide_flights(posed, without=()):
 
     groups = find_causes(ranked, needed)
     firsts = [fits[0] for fits in stages[: len(groups)]]
-    hidden = [fit for fits in stages[len(groups) :] for fit in fits if fit.gain > needed_of(fit.cause.name)]
+    hidden = [fit for fits in stages[len(groups) :] for fit in fits if fit.gain > by_odds(fit.cause.name)]
     alike = [
         [
             rows.refitted(fit, [*sound, *(first for first in firsts if first is not own)])
@@ -182,7 +183,7 @@ def _limits(posed, rows, more):
         seen = deviations[deviations < 0.9 * scale]  # the others are not filmed
         if len(seen):
             # the gain of a size m: m^2 / (2 d^2) - ln(scale / d)
-            needed = needed_of(cause.name) + more + np.log(scale / seen).sum()
+            needed = by_odds(cause.name) + more + np.log(scale / seen).sum()
             found[cause.name] = {
                 posed.name: max(float(np.sqrt(2.0 * needed) * seen.max()), cause.sound(posed))
             }
@@ -213,7 +214,7 @@ def _not_seen(posed, broken, alike, share, rows, hidden, mirrored):
         for fit in hidden
     ]
     lines.append(_inertia_words(seen_ratios(posed, rows.arcs)))
-    if mirrored > needed_of("eccentricity"):
+    if mirrored > by_odds("eccentricity"):
         lines.append(
             f"rotations of the other hand would explain the flights better, by {mirrored:.0f} nats: the signs of the "
             "angles, or of a horizontal axis, are to be checked"

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.diagnosis.answer.answer import ODDS
+from blockshake.diagnosis.answer.thresholds import ODDS
 from blockshake.diagnosis.flight.causes import CAUSES
 from blockshake.diagnosis.flight.decide import estimate_in_si
 from blockshake.diagnosis.flight.figure import plot_accelerations, plot_errors

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+import numpy as np
+
 from blockshake.diagnosis.nominal.nominal_model import MODELS
 from blockshake.diagnosis.nominal.planned_test import planned_motion, planned_sealed, planned_test
 from blockshake.effects.registry import EFFECTS
@@ -12,9 +14,11 @@ from blockshake.errors import InputError
 from blockshake.files import PACKAGE, content_digest
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Campaign, load_campaign
+from blockshake.measurement.campaigns.commanded_motion import commanded_motion
 from blockshake.measurement.campaigns.open_readings import open_test_names
 
 _CHECKOUT = PACKAGE.parents[1].resolve()
+_SECONDS = 0.05  # of one core: to simulate and judge a second of a test of one block, mean of both solvers
 ENSEMBLES_OF_SEALED_TEST = 4  # nominal, recalibrated, extended, placebo
 
 
@@ -27,12 +31,14 @@ class Effort:
     members: int  # of every ensemble that predicts a sealed test, by each solver
     twins: int  # by which it is measured how long a test can be predicted, by each solver
     outcomes: int  # models of each test of which it is known alone whether the body fell
+    clean: int  # nominal models at most of all open tests together, by each solver, that are judged as if measured
+    clean_seconds: float = np.inf  # of one core, that these may take by `_SECONDS`
 
 
 EFFORTS = {
-    "quick": Effort(tests=0, draws=0, members=0, twins=0, outcomes=4),
-    "standard": Effort(tests=3, draws=40, members=12, twins=4, outcomes=8),
-    "deep": Effort(tests=12, draws=80, members=40, twins=8, outcomes=16),
+    "quick": Effort(tests=0, draws=0, members=0, twins=0, outcomes=4, clean=2, clean_seconds=30.0),
+    "standard": Effort(tests=3, draws=40, members=12, twins=4, outcomes=8, clean=10),
+    "deep": Effort(tests=12, draws=80, members=40, twins=8, outcomes=16, clean=40),
 }
 
 
@@ -49,6 +55,28 @@ class Plan:
     def tests(self):
         """Those of them that are simulated, `PlannedTest` by name."""
         return {name: planned_test(self.campaign, name, self._structure) for name in self.simulated}
+
+    @cached_property
+    def opened(self):
+        """All open tests as they are simulated, `PlannedTest` by name; none of a campaign whose motions are not known.
+
+        So it is of free flight and of outcomes too.
+        """
+        campaign = self.campaign
+        if campaign.still or campaign.by_outcomes:
+            return {}
+        if any(commanded_motion(campaign, campaign.tests[name]) is None for name in self.open):
+            return {}
+        return {name: planned_test(campaign, name, self._structure) for name in self.open}
+
+    @cached_property
+    def clean(self):
+        """Nominal models of all open tests together, by each solver, that are judged as if they had been measured."""
+        free = int((~self._structure.driven).sum())
+        seconds = _SECONDS * free * sum(test.duration for test in self.opened.values())
+        if not seconds:
+            return 0
+        return int(min(self.effort.clean, max(self.effort.clean_seconds / (len(MODELS) * seconds), 1.0)))
 
     @property
     def sealed(self):

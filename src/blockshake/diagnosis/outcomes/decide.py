@@ -5,9 +5,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from blockshake.diagnosis.answer.answer import Rival, find_causes, needed_of, share_of
+from blockshake.diagnosis.answer.answer import Rival, find_causes, share_of
 from blockshake.diagnosis.answer.decide import chance, kind_of, probabilities
 from blockshake.diagnosis.answer.decision import MEMBERS, Cause, Decision, Estimate, Part
+from blockshake.diagnosis.answer.thresholds import by_odds
 from blockshake.diagnosis.outcomes.posterior import (
     fitted_curve,
     load_outcomes,
@@ -67,7 +68,7 @@ def decide_outcomes(campaign, files, without=()):
         rivals = [Rival(cause, name, gain, gain, (name,)) for cause, gain in gains.items()]
         return sorted(rivals, key=lambda one: -one.gain)
 
-    groups = find_causes(ranked, lambda cause, known: needed_of(cause) + share_of(known))
+    groups = find_causes(ranked, lambda cause, known: by_odds(cause) + share_of(known))
     firsts = [group.rivals[0].cause for group in groups]
     parts = tuple(
         _part(name, extent, group, [other for other in firsts if other != own], weigh)

@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import ndtr
 
-from blockshake.diagnosis.answer.answer import COARSENING, ODDS, needed_of, rank
+from blockshake.diagnosis.answer.answer import COARSENING, rank
 from blockshake.diagnosis.answer.explain import Evidence, explain, gather_evidence
 from blockshake.diagnosis.answer.limits import SURELY, from_null, limits_of, usual_column
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_of
 from blockshake.diagnosis.answer.static_tests import distance, expected_readings
+from blockshake.diagnosis.answer.thresholds import ODDS, Thresholds, by_odds
 from blockshake.diagnosis.evidence.closed_joints import closed_joints
 from blockshake.diagnosis.evidence.explanation import best_of
 from blockshake.diagnosis.evidence.slab_motion import slab_motion, slab_turns
@@ -30,7 +31,7 @@ class NominalCampaign:
         self._evidence = gather_evidence(seen)
         self._slabs = [slab_motion(test) for test in seen]
         self._closed = closed_joints(seen)
-        self.limits = limits_of(self._evidence, self._slabs, self._closed)
+        self.limits = limits_of(self._evidence, self._slabs, self._closed, Thresholds())
 
     def chance_seen(self, name, place, size):
         """Chance to see an effect as far from its null value."""
@@ -48,7 +49,7 @@ class NominalCampaign:
         read, seen, further = self._reads(name, place, true), self.chance_seen(name, place, size), 0.0
         if static:
             alone = np.sqrt(distance(static, read, {}, {}, {}))
-            seen = max(seen, float(ndtr(alone - np.sqrt(2.0 * needed_of(name)))))
+            seen = max(seen, float(ndtr(alone - np.sqrt(2.0 * by_odds(name)))))
         chances = {None: seen}
         for rival, (odds, deviation, where, values) in self._rivals(name, place, size).items():
             if static:

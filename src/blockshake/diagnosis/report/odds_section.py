@@ -1,6 +1,7 @@
 """Second section of a diagnosis: the odds of every cause that was tried, and how they were counted."""
 
-from blockshake.diagnosis.answer.answer import COARSENING, FREE_SHARE, coarsened
+from blockshake.diagnosis.answer.answer import COARSENING, coarsened
+from blockshake.diagnosis.answer.thresholds import FREE_SHARE
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.diagnosis.report.statement import RATIO
 from blockshake.diagnosis.wording import name_of, times_words

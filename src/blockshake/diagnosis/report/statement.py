@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.diagnosis.answer.answer import ODDS
+from blockshake.diagnosis.answer.thresholds import ODDS
 from blockshake.diagnosis.verdict.ladder import NOTHING, ONE_OF, UNKNOWN
 from blockshake.diagnosis.wording import (
     beyond,

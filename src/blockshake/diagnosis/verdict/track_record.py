@@ -86,7 +86,7 @@ class TrackRecord(Strict):
 
 def procedure_digest():
     """Digest of the sources that decide today; a record of another is of an earlier program."""
-    return source_digest(*script_sources("decide"))
+    return source_digest(*sorted({*script_sources("decide"), *script_sources("simulate_clean")}))
 
 
 def load_track_record(path):

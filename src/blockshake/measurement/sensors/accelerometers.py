@@ -35,6 +35,14 @@ def accelerometer_channels(structure):
     return list(channel_carriers(structure))
 
 
+def read_channels(test):
+    """Names of the channels of which a test has any reading, list of str."""
+    if "accelerometer" not in test:
+        return []
+    read = test["accelerometer"].notnull().any("time_acc")
+    return list(map(str, test["channel"].values[read.to_numpy()]))
+
+
 def shaken_channels(test, structure):
     """Channels of a test that read a driven body along x, in file order, list of str."""
     if "accelerometer" not in test:
