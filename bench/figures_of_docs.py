@@ -27,7 +27,7 @@ from the_paper import HEADER, count_words, judge_statements
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import load_json, load_yaml, write_text
 from blockshake.geometry.structure import load_structure
-from blockshake.pages.wording import given, model_label, number
+from blockshake.pages.wording import given, number
 from blockshake.simulation.simulate import simulate
 from blockshake.study.calibration.section import answers_table
 from blockshake.study.comparison.tables import other_settings_table
@@ -56,7 +56,8 @@ DIAGNOSED = DOCS.parent / "data" / "virtual-campaign" / "configuration-2"
 PROFILE = DOCS.parent / "profiles" / "slurm" / "profile.yaml"
 DONE = Path("reports/study.html")
 _CORES = (1, 64, 1024)
-_MOST_OF_A_FINDING = 160  # characters on the page
+_PRICES = (0, 1, 3, 4, 7, 8)  # case, model, peak and width of the table of other settings, with their changes
+_MOST_OF_A_FINDING = 110  # characters on the page
 _SHOWN = 8  # rules that take most of the time
 
 
@@ -124,7 +125,7 @@ def statements(study):
 
 
 def _shortened(words):
-    """A finding, cut after its last sentence or item within 160 characters."""
+    """A finding, cut after its last sentence or item within 110 characters."""
     if len(words) <= _MOST_OF_A_FINDING:
         return words
     kept = words[:_MOST_OF_A_FINDING]
@@ -134,15 +135,14 @@ def _shortened(words):
 
 def _study_words(content, *more):
     """The study that findings come from, and more sentences, in lines."""
-    study = content.study
-    cases = "; ".join(
-        f"{case.name}, {case.motion} at {given(case.settings['scale'])}, {given(case.settings['duration'])} s"
-        for case in content.cases.values()
-    )
+    study, shaken = content.study, {}
+    for case in content.cases.values():
+        motion = f"{case.motion} at {given(case.settings['scale'])}, {given(case.settings['duration'])} s"
+        shaken.setdefault(motion, []).append(case.name)
+    cases = "; ".join(f"{', '.join(names)}: {motion}" for motion, names in shaken.items())
     words = (
         f"Study `{study['name']}` (blockshake {content.versions['blockshake']}): "
-        f"{' '.join(study['description'].split())}. {len(content.design)} samples; "
-        f"{', '.join(map(model_label, study['models']))}; {cases}."
+        f"{' '.join(study['description'].split())}. {len(content.design)} samples; {cases}."
     )
     return textwrap.wrap(" ".join([words, *more]), 100, break_on_hyphens=False)
 
@@ -153,10 +153,11 @@ def printed_settings():
     if content is None:
         return None
     prices = other_settings_table(content)
-    rows = [row for row in prices.rows if any(_changes(cell) for cell in row)]
+    header, *rows = ([row[column] for column in _PRICES] for row in (prices.header, *prices.rows))
+    rows = [row for row in rows if any(_changes(cell) for cell in row)]
     count = f"{len(rows)} of {len(prices.rows)}"
     words = f"The table has {count} comparisons: in the others no change is beyond its limits."
-    return "\n".join([*_study_words(content, words), "", markdown(prices.header, rows)])
+    return "\n".join([*_study_words(content, words), "", markdown(header, rows)])
 
 
 def _changes(cell):
