@@ -151,7 +151,8 @@ def _part(name, source, folder, halves):
     ]  # fmt: skip
     if name == "cube-tosses":
         lines.append(PUBLISHED)
-    lines.append(faces_table(campaign, gain))
+    else:
+        lines.append(faces_table(campaign, gain))
     return "\n\n".join(lines)
 
 
@@ -192,9 +193,8 @@ def _gains(verdict):
 
 def _errors(gain, width):
     rows = [
-        "| model | friction | restitution | inertia | early [mm] | path [mm] | path [% of the width] | "
-        "rotation [degrees] |",
-        "| --- | --- | --- | --- | --- | --- | --- | --- |",
+        "| model | friction | restitution | inertia | early [mm] | path [% of the width] | rotation [degrees] |",
+        "| --- | --- | --- | --- | --- | --- | --- |",
     ]
     for kind in gain["kind"].values:
         own = gain.sel(kind=kind)
@@ -207,7 +207,7 @@ def _errors(gain, width):
 
 
 def _error_cells(early, place, turn, width):
-    values = early * 1e3, place * 1e3, place * 100.0 / width, np.degrees(turn)
+    values = early * 1e3, place * 100.0 / width, np.degrees(turn)
     return " | ".join(f"{float(np.mean(one)):.1f} +- {float(np.std(one)):.1f}" for one in values)
 
 
@@ -262,26 +262,16 @@ def _turn_noise(posed, arc):
 
 
 def _of_halves(decisions):
-    """Answers of other random halves: kinds of answers, first causes, and the range of their sizes."""
+    """Answers of other random halves: kinds of answers and first causes."""
     if not decisions:
         return ""
     kinds = {}
     for one in decisions:
         key = f"{one.decision}: {' + '.join(TITLES[part.causes[0].name] for part in one.parts) or 'none'}"
         kinds[key] = kinds.get(key, 0) + 1
-    sizes = {}
-    for one in decisions:
-        for part in one.parts:
-            for cause in part.causes:
-                for name, estimate in cause.parameters.items():
-                    sizes.setdefault((TITLES[cause.name], name, estimate.unit), []).append(estimate.estimate)
     lines = [
         f"- {count} of {len(decisions)}: {key}"
         for key, count in sorted(kinds.items(), key=lambda one: -one[1])
-    ]
-    lines += [
-        f"- {title}, {name}: {np.min(values):.3g} to {np.max(values):.3g} {unit} in {len(values)} halves"
-        for (title, name, unit), values in sizes.items()
     ]
     return f"{len(decisions)} further random halves were decided on:\n\n" + "\n".join(lines)
 

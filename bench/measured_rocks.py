@@ -131,7 +131,7 @@ def _other_solver(campaign, store):
         done = np.isfinite(lean) | np.isposinf(lean)
         fell = fell_in(campaign, runs["test"].to_numpy().tolist())
         usual = np.degrees(np.median(lean[np.isfinite(lean)]))
-        words = f"{solver}, {done.sum()} tests, those it survives lean by {usual:.2g} degrees (median)"
+        words = f"{solver}, {done.sum()} tests, median tilt without a fall {usual:.2g} degrees"
         rows.append(_row(words, np.isposinf(lean)[done].astype(float), fell[done]))
     return "\n".join([
         f"Both solvers by the structure file's model, on all tests of every {_EVERY}th batch of {BATCH}, sealed "
