@@ -41,12 +41,14 @@ def _force_evaluation(result):
 def _arithmetic(result):
     peak = result["peak_gflops"]
     yield "Share of the core's peak, exact distance"
-    for loop in result["loops"]:
-        yield (
-            f"  loop of {loop['operations_per_node']:.0f} operations a node, "
-            f"{100 * loop['packed_share']:.0f} % packed, {loop['vector_bits']} bits"
-            f"{', with gathers' if loop['gathers'] else ''}"
-        )
+    loops = result["loops"]
+    operations = ", ".join(f"{loop['operations_per_node']:.0f}" for loop in loops)
+    yield (
+        f"  loops of {operations} operations a node, at least "
+        f"{100 * min(loop['packed_share'] for loop in loops):.0f} % packed, "
+        f"{min(loop['vector_bits'] for loop in loops)} bits"
+        f"{', some with gathers' if any(loop['gathers'] for loop in loops) else ''}"
+    )
     yield (
         f"  peak {peak['fused']['median']:.1f} Gflop/s fused, {peak['separate']['median']:.1f} separate; "
         f"reached {result['reached_gflops']:.1f}: {100 * result['share_of_peak']:.0f} % of the peak"
@@ -104,16 +106,18 @@ def _nscd_walls(result):
 
 
 def _still_stack(result):
-    yield f"At rest for {still_stack.DURATION:g} s: largest drift and sinking [um], and turn [urad], of any block"
-    yield f"  {'':<34}{'program':<20}{'drift':<12}{'sink':<12}turn"
-    for case, programs in result.items():
-        for program, found in programs.items():
-            told = (
-                "".join(f"{1e6 * max(one, 0.0):<12.2g}" for one in found.values())
-                if isinstance(found, dict)
-                else found
-            )
-            yield f"  {case:<34}{program:<20}{told}".rstrip()
+    yield f"At rest for {still_stack.DURATION:g} s: largest drift and sinking [um], and rotation [urad], of any block"
+    yield f"  of {'; '.join(result)}"
+    yield f"  {'':<20}{'drift':<12}{'sink':<12}rotation"
+    for program in next(iter(result.values())):
+        found = [programs[program] for programs in result.values()]
+        measured = [tuple(one.values()) for one in found if isinstance(one, dict)]
+        told = (
+            "".join(f"{1e6 * max(0.0, *values):<12.2g}" for values in zip(*measured, strict=True))
+            if len(measured) == len(found)
+            else next(one for one in found if not isinstance(one, dict))
+        )
+        yield f"  {program:<20}{told}".rstrip()
 
 
 def _beside(value, target):
