@@ -14,6 +14,7 @@ import pytest
 import yaml
 from wrong_keys import BESIDE, CAMPAIGN, EXEMPT, ROWS, STUDY, TURNED, write_files
 
+from blockshake.dynamics.record_choice import TargetSpectrum
 from blockshake.errors import InputError
 from blockshake.files import load_yaml
 from blockshake.geometry.schema import Array, Cylinder, StructureFile
@@ -37,6 +38,8 @@ ELSEWHERE = (
     "cases.*.intensity.measure",
     "cases.*.intensity.period",
     "cases.*.intensity.levels",
+    "cases.*.intensity.unit",
+    *(f"cases.*.intensity.spectrum.{key}" for key in TargetSpectrum.model_fields),
     "ensemble.table",
     "ensemble.distributions.*.values",
     "ensemble.distributions.*.probabilities",

@@ -106,6 +106,16 @@ def motion_file(wildcards):
     return files_of_motion(MOTIONS[wildcards.motion])
 
 
+def intensity_of_records(wildcards):
+    """That of the first case which chooses records of a set to a spectrum, if any."""
+    asked = (
+        one["intensity"] or {}
+        for one in config["cases"]
+        if one["motion"] == MOTIONS[wildcards.motion]
+    )
+    return next((one for one in asked if one.get("spectrum")), None)
+
+
 def case_keys(case, *more):
     """Entries of a case in the configuration that its runs depend on."""
     keys = ("name", "structure", "motion", "baseline", "duration", *more)

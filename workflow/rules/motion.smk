@@ -11,6 +11,7 @@ rule describe_motion:
     params:
         motion=lambda wildcards: MOTIONS[wildcards.motion],
         baseline=lambda wildcards: BASELINES[MOTIONS[wildcards.motion]],
+        intensity=intensity_of_records,
         yaml_contents=yaml_contents(motion_file),
         source=source_of("describe_motion"),
     script:

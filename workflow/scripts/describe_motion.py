@@ -4,4 +4,4 @@ from blockshake.log import logging_to
 
 with logging_to(snakemake.log[0]):
     params = snakemake.params
-    write_dataset(snakemake.output[0], describe_motions(params.motion, params.baseline))
+    write_dataset(snakemake.output[0], describe_motions(params.motion, params.baseline, params.intensity))

@@ -7,7 +7,8 @@ import xarray as xr
 
 from blockshake.dynamics.intensity import DAMPING, motion_figures, response_spectrum
 from blockshake.dynamics.load_motion import load_motion, plain_attributes
-from blockshake.dynamics.record_set import is_record_set, read_records
+from blockshake.dynamics.record_choice import mean_and_scatter
+from blockshake.dynamics.record_set import DrawnMotions, is_record_set
 from blockshake.dynamics.synthetic_motion import load_synthetic, target_acceleration
 from blockshake.files import named_file
 
@@ -15,7 +16,7 @@ _RATE = 200.0  # Hz, of the histories
 _PERIODS = np.geomspace(0.04, 4.0, 120)  # s
 
 
-def describe_motions(source, baseline):
+def describe_motions(source, baseline, intensity=None):
     """`describe_motion` of a motion, or of the record of median peak acceleration of a set, as published.
 
     Parameters
@@ -24,15 +25,24 @@ def describe_motions(source, baseline):
         As `read_records` takes it.
     baseline : str or float
         As for `load_motion`.
+    intensity : dict, optional
+        That of a case: with a ``spectrum`` the records are those chosen to it, each with its scale.
 
     Returns
     -------
     xarray.Dataset
         Of a set also ``spectra(record, period)`` [m/s2]; attributes ``records``, their number, and ``significant_end``,
-        the latest [s]; ``synthetic`` where any is.
+        the latest [s]; ``synthetic`` where any is. Of chosen records also ``chosen`` and ``aim(bound, aimed_period)``:
+        median and this less and plus a standard deviation, of the records and of the target [m/s2].
     """
-    records = read_records(source)
+    asked = {"motion": source, "baseline": baseline, "scale": 1.0, "intensity": intensity}
+    drawn = DrawnMotions.of(
+        asked if intensity and intensity.get("spectrum") else {**asked, "intensity": None}
+    )
+    target, records = drawn.intensity.spectrum, drawn.records
     motions = [load_motion(record.path, baseline=baseline) for record in records]
+    if target is not None:
+        motions = [drawn.motion(record) for record in records]
     figures = [motion_figures(motion) for motion in motions]
     order = np.argsort([one["peak_acceleration"] for one in figures], kind="stable")
     middle = order[(len(order) - 1) // 2]
@@ -41,6 +51,13 @@ def describe_motions(source, baseline):
         return described
     spectra = np.array([response_spectrum(motion, _PERIODS) for motion in motions])
     described["spectra"] = ("record", "period"), spectra, described["pseudo_acceleration"].attrs
+    if target is not None:
+        mean, scatter = mean_and_scatter(target, motions)
+        aimed = np.zeros(len(target.periods)), np.array(target.deviation or np.zeros(len(target.periods)))
+        for name, (middle_of, width) in {"chosen": (mean, scatter), "aim": aimed}.items():
+            bounds = np.exp(np.array([middle_of - width, middle_of, middle_of + width])) * target.median
+            described[name] = ("bound", "aimed_period"), bounds, described["pseudo_acceleration"].attrs
+        described = described.assign_coords(aimed_period=np.array(target.periods))
     return described.assign_coords(record=[record.name for record in records]).assign_attrs(
         name=f"{Path(source).stem}, {records[middle].name}",
         records=len(records),

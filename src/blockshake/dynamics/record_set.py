@@ -1,23 +1,29 @@
 """Motions that samples draw: records of a folder or a table, each as strong as it is or scaled to an intensity."""
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from blockshake.dynamics.intensity import motion_figures, response_spectrum
 from blockshake.dynamics.load_motion import load_motion, scaled
+from blockshake.dynamics.record_choice import TargetSpectrum, choose
 from blockshake.errors import InputError
 from blockshake.files import content_digest, named_file, read_foreign_text, shipped_names
 from blockshake.tables.numbers import plain_number
 from blockshake.tables.table_file import csv_records
+from blockshake.tables.units import unit_size
 from blockshake.validation import Positive, Strict
 
-_FILE, _FACTORS = "file", ("scale", "level")
+_FILE, _FACTORS, _EVENT, _OTHERS = "file", ("scale", "level"), "event", ("y", "z")
 _NO_MOTIONS = (".json", ".md", ".pdf", ".vt2", ".dt2")  # what lies beside records in a folder
+
+
+def _are_numbers(values):
+    return isinstance(values, (list, tuple)) and all(type(one) in (int, float) for one in values)
 
 
 class Intensity(Strict):
@@ -31,9 +37,33 @@ class Intensity(Strict):
     period: Positive | None = Field(None, description="of `sa`, which needs it [s]")
     levels: tuple[Positive, ...] = Field(
         (),
-        description="rising, in the unit of the measure: every sample is scaled to one of them, in turn; none leaves "
-        "each motion as strong as it is, or as its table says",
+        description="rising, in `unit`: every sample is scaled to one of them, in turn; none leaves each motion as "
+        "strong as it is, or as its table or `spectrum` says",
     )
+    unit: Literal["m/s2", "cm/s2", "g", "m/s", "cm/s"] | None = Field(
+        None,
+        description="of the levels; by default m/s2, and m/s of `pgv`",
+        exclude_if=lambda given: given is None,  # levels are SI once they are read
+    )
+    spectrum: TargetSpectrum | None = Field(
+        None,
+        description="records are chosen to it, a scale each and at most one of an event; none: all are drawn",
+        exclude_if=lambda given: given is None,
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _in_si(cls, given: Any):
+        """Levels in SI, so that a mapping that is read again is the same."""
+        if (
+            not isinstance(given, dict)
+            or given.get("unit") is None
+            or not _are_numbers(given.get("levels", ()))
+        ):
+            return given
+        kind = "velocity" if given.get("measure") == "pgv" else "acceleration"
+        size = float(unit_size(kind, str(given["unit"]), "", "unit"))
+        return given | {"unit": None, "levels": [size * level for level in given.get("levels", ())]}
 
     @model_validator(mode="after")
     def _is_whole(self):
@@ -51,12 +81,17 @@ class Intensity(Strict):
 
 
 class SetRecord(NamedTuple):
-    """A motion of a set: name and path of its file, its factor, and the level that it is scaled to, if any."""
+    """A motion of a set: name and path of its file, its factor, and the level that it is scaled to, if any.
+
+    ``event`` where a table tells it; ``components``: axis and path of the files of other components.
+    """
 
     name: str
     path: str
     scale: float = 1.0
     level: float | None = None
+    event: str | None = None
+    components: tuple = ()
 
 
 def is_record_set(source):
@@ -71,7 +106,9 @@ def is_record_set(source):
 def record_files(source):
     """Files of a set of records, its table first, or the one of a motion: paths."""
     table = [Path(source)] if is_record_set(source) and Path(source).is_file() else []
-    return [*table, *(named_file("motions", record.path) for record in read_records(source))]
+    records = read_records(source)
+    others = [Path(path) for record in records for _, path in record.components]
+    return [*table, *(named_file("motions", record.path) for record in records), *others]
 
 
 def read_records(source):
@@ -83,7 +120,8 @@ def read_records(source):
         A folder, each file of which is a motion (names that begin with a dot, metadata, texts about the records, and
         PEER's velocities and displacements of the same records are passed over); a CSV table with the
         column ``file``, a path from the table's folder or a shipped name, and optionally ``scale`` [1] or ``level``, in
-        the unit of the measure; or what `load_motion` reads.
+        the SI unit of the measure, ``event``, and ``y`` and ``z``, files of the record's other components; or what
+        `load_motion` reads.
 
     Raises
     ------
@@ -110,19 +148,23 @@ def read_records(source):
 
 def _record(table, place, cells):
     for name in cells:
-        if name not in (_FILE, *_FACTORS):
-            raise InputError(table, name, "expected the columns file and, of each, scale or level")
+        if name not in (_FILE, *_FACTORS, _EVENT, *_OTHERS):
+            expected = "expected the columns file and, of each, scale or level, event, y and z"
+            raise InputError(table, name, expected)
     if cells.keys() >= set(_FACTORS):
         raise InputError(table, "level", "expected one of scale and level: a level sets the scale")
-    name = cells.pop(_FILE)
+    name, event = cells.pop(_FILE), cells.pop(_EVENT, "").strip() or None
     path = name if name in shipped_names("motions") else str(table.parent / name)
-    if not named_file("motions", path).is_file():
-        raise InputError(table, f"{place}, {_FILE}", f"expected a file below {table.parent}, not '{name}'")
+    others = {axis: cells.pop(axis).strip() for axis in _OTHERS if axis in cells}
+    components = tuple((axis, str(table.parent / other)) for axis, other in others.items() if other)
+    for key, file in ((_FILE, path), *components):
+        if not named_file("motions", file).is_file():
+            raise InputError(table, f"{place}, {key}", f"expected a file below {table.parent}, not '{file}'")
     numbers = {key: float(plain_number(cell) or "nan") for key, cell in cells.items()}
     for key, value in numbers.items():
         if not 0.0 < value < np.inf:
             raise InputError(table, f"{place}, {key}", f"expected a number above 0, not '{cells[key]}'")
-    return SetRecord(Path(name).name, path, **numbers)
+    return SetRecord(Path(name).name, path, **numbers, event=event, components=components)
 
 
 @dataclass(frozen=True)
@@ -147,7 +189,12 @@ class DrawnMotions:
         records, asked = read_records(case["motion"]), Intensity(**(case.get("intensity") or {}))
         if asked.levels and any(one.level or one.scale != 1.0 for one in records):
             raise InputError(case["motion"], "", "expected no scale and no level beside intensity.levels")
-        return cls(records, case["baseline"], case["scale"], asked, {} if loaded is None else loaded)
+        drawn = cls(records, case["baseline"], case["scale"], asked, {} if loaded is None else loaded)
+        if asked.spectrum is None:
+            return drawn
+        motions = [drawn._read(record) for record in records]
+        chosen = choose(asked.spectrum, records, motions, case["motion"], bool(asked.levels))
+        return replace(drawn, records=chosen)
 
     def draw(self, sample, seed):
         """`SetRecord` of a sample by its number.
@@ -179,7 +226,9 @@ class DrawnMotions:
     def _read(self, record):
         key = record.path, self.baseline
         if key not in self.loaded:
-            self.loaded[key] = load_motion(record.path, baseline=self.baseline)
+            self.loaded[key] = load_motion(
+                record.path, baseline=self.baseline, components=dict(record.components)
+            )
         return self.loaded[key]
 
     def weakest_own(self):

@@ -12,6 +12,7 @@ from blockshake.dynamics.baseline import AUTO
 from blockshake.dynamics.intensity import strong_until
 from blockshake.dynamics.load_motion import load_motion, provenance
 from blockshake.dynamics.motion import GroundMotion
+from blockshake.dynamics.record_choice import mean_and_scatter
 from blockshake.dynamics.record_set import DrawnMotions, is_record_set, read_records, record_files
 from blockshake.dynamics.synthetic_motion import SyntheticMotion
 from blockshake.errors import InputError, faults_of
@@ -145,8 +146,21 @@ def _study_line(source):
     motions = {name: list(one.strongest()) for name, one in drawn.items()}
     records = [f"  {name}: {provenance(motion.attributes)}" for (name, _), motion in loaded.items()]
     lines = [f"a study of {count_words(len(config.cases), 'case')} by {', '.join(models)}", *records]
+    lines += [_choice_line(name, one) for name, one in drawn.items() if one.intensity.spectrum]
     remarks = [*_level_remarks(drawn), *_study_remarks(config, motions)]
     return _with_remarks(lines, remarks)
+
+
+def _choice_line(case, drawn):
+    """Records that are chosen to a target spectrum, and how near to it."""
+    target = drawn.intensity.spectrum
+    mean, scatter = mean_and_scatter(target, [drawn.motion(record) for record in drawn.records])
+    names = ", ".join(f"{record.name} x {record.scale:.3g}" for record in drawn.records)
+    off = np.abs(scatter - (target.deviation or 0.0)).max()
+    return (
+        f"  {case}: {len(drawn.records)} records are chosen, {names}; their median is within "
+        f"{100 * np.expm1(np.abs(mean).max()):.2g} % of the target's at each period, their scatter within {off:.2g}"
+    )
 
 
 def _level_remarks(drawn):

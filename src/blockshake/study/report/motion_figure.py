@@ -57,6 +57,11 @@ def plot_spectra(motions):
                         motion["target_period"][which], motion["target"][which], "o", markersize=4.0,
                         markerfacecolor=face, markeredgecolor=RED, label=label,
                     )  # fmt: skip
+        if "aim" in motion:
+            for name, colour, whose in (("aim", RED, "target"), ("chosen", BLACK, "records chosen")):
+                for bound, line in zip(motion[name].to_numpy(), ("--", "-", "--"), strict=True):
+                    label = {"label": f"{whose}, median and scatter"} if line == "-" else {}
+                    axes.plot(motion["aimed_period"], bound, line, color=colour, linewidth=1.0, **label)
         axes.set(xscale="log", yscale="log", xlabel="period [s]", title=_title(motion))
         axes.set_xticks([0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0], ["0.05", "0.1", "0.2", "0.5", "1", "2", "4"])
         axes.set_xticks([], minor=True)
