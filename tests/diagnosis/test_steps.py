@@ -7,8 +7,9 @@ from tiny_campaign import write_campaign
 from tiny_diagnosis import SOLVERS, TINY, a_formula, gain_of, simulate_open_tests
 
 from blockshake.diagnosis import steps
+from blockshake.diagnosis.verdict.ladder import NOT_JUDGED, rung
 from blockshake.errors import InputError
-from blockshake.files import PACKAGE, write_text
+from blockshake.files import PACKAGE, write_dataset, write_text
 from blockshake.store import load_made
 
 STRUCTURE = PACKAGE.parents[1] / "hidden_effects" / "structures" / "two-blocks.yaml"
@@ -87,3 +88,16 @@ def test_a_second_diagnosis_simulates_nothing_anew(found):
     assert {path.name for path in (folder / "store").iterdir()} == before
     for one, other in zip(files.ensembles, again.ensembles, strict=True):
         xr.testing.assert_identical(load_made(one), load_made(other))
+
+
+def test_tests_that_are_too_short_end_in_a_verdict_that_says_so(tmp_path):
+    write_campaign(tmp_path / "campaign", STRUCTURE)
+    for path in (tmp_path / "campaign").glob("*.nc"):
+        whole = load_made(path)
+        write_dataset(path, whole.sel(time=slice(0.0, 0.1), time_acc=slice(0.0, 0.1)))
+    decided = steps.decide(str(tmp_path / "campaign"), ())
+    assert decided.decision.decision == "none"
+    assert decided.decision.tests == ()
+    assert all("too short" in line for line in decided.decision.cannot_see)
+    assert rung("none", decided.decision, False, None).word == NOT_JUDGED
+    assert decided.evidence.sizes["instant"] == decided.evidence.sizes["reading"] == 0

@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 import xarray as xr
 
-from blockshake.errors import InputError
 from blockshake.store import load_made
 
 
@@ -31,18 +30,14 @@ def decide(folder, without, files=None):
 
     ``files.outcomes`` are the batches of `simulate_outcomes`; a campaign with readings has none. ``files.clean`` are
     the files of `simulate_clean`, none where no motion is known.
-
-    Raises
-    ------
-    InputError
-        No open test shows any forces.
     """
-    from blockshake.diagnosis.answer.decide import decide
+    from blockshake.diagnosis.answer.decide import decide, undecided
     from blockshake.diagnosis.answer.thresholds import thresholds_of
     from blockshake.diagnosis.evidence.seen_campaign import see_campaign
     from blockshake.diagnosis.flight.decide import decide_flights
     from blockshake.diagnosis.outcomes.decide import decide_outcomes
     from blockshake.files import load_json
+    from blockshake.geometry.structure import load_structure
     from blockshake.measurement.campaigns.campaign import load_campaign
     from blockshake.measurement.poses.posed_test import load_posed
     from blockshake.parity.parity import UNCHECKED
@@ -55,8 +50,7 @@ def decide(folder, without, files=None):
     seen = see_campaign(campaign, without)
     unseen = [f"{name} is not judged: {reason}" for name, reason in seen.unseen.items()]
     if not seen.tests:
-        expected = f"expected an open test whose forces can be read; {'; '.join(unseen)}"
-        raise InputError(folder, "tests", expected)
+        return DecidedCampaign(seen.parity, *undecided(load_structure(campaign.structure), without, unseen))
     runs = [run for path in files.clean for run in load_json(path)] if files else []
     return DecidedCampaign(seen.parity, *decide(seen.tests, without, unseen, thresholds_of(runs)))
 

@@ -14,7 +14,7 @@ from blockshake.diagnosis.answer.answer import (
     soft_gains,
 )
 from blockshake.diagnosis.answer.decision import Cause, Decision, Part
-from blockshake.diagnosis.answer.departures import departures, largest, slab_departures
+from blockshake.diagnosis.answer.departures import departures, departures_of_no_test, largest, slab_departures
 from blockshake.diagnosis.answer.explain import EVERY, gather_evidence
 from blockshake.diagnosis.answer.history import histories, of_last_test
 from blockshake.diagnosis.answer.limits import cannot_see, excluded_above, limits_of
@@ -107,6 +107,15 @@ def decide(seen, without=(), unseen=(), thresholds=_BY_ODDS):
         histories=paths,
     )
     return Decided(decision, shown.merge(slab_departures(seen, slabs, slab, parts)))
+
+
+def undecided(structure, without, unseen):
+    """`Decided` of a campaign of which no test shows any forces: no cause, and why nothing was read."""
+    decision = Decision(
+        decision="none", parts=(), probabilities=probabilities((), without), limits={}, excluded_above={}, p=1.0,
+        where="no test shows any forces", tests=(), silent=(), n_rows=0, cannot_see=tuple(unseen),
+    )  # fmt: skip
+    return Decided(decision, departures_of_no_test(structure))
 
 
 def _by_chance(evidence, closed, thresholds, groups):

@@ -56,11 +56,22 @@ def departures(seen, evidence, explained):
             )
         )
     if not parts:
-        none = {name: (("instant", "body"), np.zeros((0, len(names)))) for name in _NAMES}
-        return xr.Dataset(
-            none, {"test": ("instant", np.zeros(0, "U1")), "time": ("instant", []), "body": names}
-        )
+        return _no_departures(names)
     return xr.concat(parts, dim="instant").map(lambda forces: forces.assign_attrs(units="N"))
+
+
+def _no_departures(names):
+    none = {name: (("instant", "body"), np.zeros((0, len(names)))) for name in _NAMES}
+    return xr.Dataset(none, {"test": ("instant", np.zeros(0, "U1")), "time": ("instant", []), "body": names})
+
+
+def departures_of_no_test(structure):
+    """Departures of bodies and of the slab where no test was read: as of `departures` and `slab_departures`, empty."""
+    names = [name for name, driven in zip(structure.body_names, structure.driven, strict=True) if not driven]
+    slab = [name for move in _MOVES for name in (move, f"{move}_explained")]
+    none = {name: ("reading", np.zeros(0)) for name in slab}
+    labels = {"slab_test": ("reading", np.zeros(0, "U1")), "slab_time": ("reading", np.zeros(0))}
+    return _no_departures(names).merge(xr.Dataset(none, labels))
 
 
 def largest(shown):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.diagnosis.answer.thresholds import ODDS
-from blockshake.diagnosis.verdict.ladder import NOTHING, ONE_OF, UNKNOWN
+from blockshake.diagnosis.verdict.ladder import NOT_JUDGED, NOTHING, ONE_OF, UNKNOWN
 from blockshake.diagnosis.wording import (
     beyond,
     cause_words,
@@ -30,7 +30,9 @@ def statement(diagnosed):
     acting = [[cause_words(one, _places(diagnosed, one)) for one in part.causes] for part in decision.parts]
     return _STATED.statement(
         word=verdict.word,
-        kind={NOTHING: "nothing", UNKNOWN: "unknown", ONE_OF: "one of"}.get(verdict.word, "named"),
+        kind={NOTHING: "nothing", NOT_JUDGED: "not judged", UNKNOWN: "unknown", ONE_OF: "one of"}.get(
+            verdict.word, "named"
+        ),
         acting=acting,
         sensors=sensor_causes(diagnosed),
         rows=decision.n_rows,

@@ -6,6 +6,7 @@ from blockshake.pages.wording import count_words
 
 ESTABLISHED, PROBABLE, ONE_OF = "established", "probable", "one of"
 UNKNOWN, NOTHING = "something acts, cause unknown", "no misfit larger than chance"
+NOT_JUDGED = "no test could be judged"
 _TESTS_TO_ESTABLISH = 3
 
 
@@ -30,7 +31,7 @@ def rung(kind, decision, beside_sensor, measured):
     measured : MeasuredGain
     """
     if kind == "none":
-        return Rung(NOTHING, ())
+        return Rung(NOTHING if decision.tests else NOT_JUDGED, ())
     if kind == "unknown":
         return Rung(UNKNOWN, ())
     if kind == "ambiguous":
