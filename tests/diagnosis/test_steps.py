@@ -94,7 +94,7 @@ def test_tests_that_are_too_short_end_in_a_verdict_that_says_so(tmp_path):
     write_campaign(tmp_path / "campaign", STRUCTURE)
     for path in (tmp_path / "campaign").glob("*.nc"):
         whole = load_made(path)
-        write_dataset(path, whole.sel(time=slice(0.0, 0.1), time_acc=slice(0.0, 0.1)))
+        write_dataset(path, whole.sel(time=slice(0.0, 0.1)))
     decided = steps.decide(str(tmp_path / "campaign"), ())
     assert decided.decision.decision == "none"
     assert decided.decision.tests == ()

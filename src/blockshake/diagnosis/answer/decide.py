@@ -112,9 +112,18 @@ def decide(seen, without=(), unseen=(), thresholds=_BY_ODDS):
 def undecided(structure, without, unseen):
     """`Decided` of a campaign of which no test shows any forces: no cause, and why nothing was read."""
     decision = Decision(
-        decision="none", parts=(), probabilities=probabilities((), without), limits={}, excluded_above={}, p=1.0,
-        where="no test shows any forces", tests=(), silent=(), n_rows=0, cannot_see=tuple(unseen),
-    )  # fmt: skip
+        decision="none",
+        parts=(),
+        probabilities=probabilities((), without),
+        limits={},
+        excluded_above={},
+        p=1.0,
+        where="no test shows any forces",
+        tests=(),
+        silent=(),
+        n_rows=0,
+        cannot_see=tuple(unseen),
+    )
     return Decided(decision, departures_of_no_test(structure))
 
 

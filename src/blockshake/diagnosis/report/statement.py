@@ -20,6 +20,7 @@ from blockshake.pages.wording import sentence_case
 from blockshake.pages.words import Words
 
 _MOST_PLACES = 4
+_KINDS = {NOTHING: "nothing", NOT_JUDGED: "not judged", UNKNOWN: "unknown", ONE_OF: "one of"}
 _STATED = Words(__name__)
 RATIO = round(np.exp(ODDS))  # of odds, within which causes are not told apart
 
@@ -30,9 +31,7 @@ def statement(diagnosed):
     acting = [[cause_words(one, _places(diagnosed, one)) for one in part.causes] for part in decision.parts]
     return _STATED.statement(
         word=verdict.word,
-        kind={NOTHING: "nothing", NOT_JUDGED: "not judged", UNKNOWN: "unknown", ONE_OF: "one of"}.get(
-            verdict.word, "named"
-        ),
+        kind=_KINDS.get(verdict.word, "named"),
         acting=acting,
         sensors=sensor_causes(diagnosed),
         rows=decision.n_rows,
