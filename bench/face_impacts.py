@@ -20,15 +20,15 @@ from measured import make_campaign
 from measured_impacts import SOLVERS
 from scipy.spatial.transform import Rotation
 
-from blockshake.diagnosis.flight.replay import FlightModel, filmed_replay, start_arc
 from blockshake.dynamics.motion import GroundMotion, rest_table
-from blockshake.forces.flight.arcs import find_arcs
-from blockshake.forces.flight.impacts import find_impacts, summary
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import build_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
-from blockshake.measurement.poses.posed_test import PosedCampaign, PosedTest, load_posed
 from blockshake.simulation.simulate import simulate
+from blockshake_flight.arcs import find_arcs
+from blockshake_flight.impacts import find_impacts, summary
+from blockshake_flight.posed_test import PosedCampaign, PosedTest, load_posed
+from blockshake_flight.replay import FlightModel, filmed_replay, start_arc
 
 HALF, DENSITY, GRAVITY, RATE = 0.03, 1200.0, 9.81, 250.0  # m, kg/m3, m/s2, readings a second
 MASS = DENSITY * (2.0 * HALF) ** 3  # kg

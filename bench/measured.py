@@ -21,17 +21,17 @@ from scipy.spatial.transform import Rotation
 
 import blockshake
 from blockshake.diagnosis.answer.decision import load_decision
-from blockshake.diagnosis.flight.causes import CAUSES
-from blockshake.diagnosis.flight.evidence import FlightFit
-from blockshake.diagnosis.flight.figure import plot_accelerations, plot_errors
-from blockshake.diagnosis.flight.replay import FlightModel, filmed_replay, start_arc
 from blockshake.diagnosis.steps import decide
 from blockshake.files import load_json, write_text
-from blockshake.forces.flight.arcs import find_arcs, noise_of
-from blockshake.forces.flight.tumbling import tumbling
 from blockshake.measurement.campaigns.campaign import load_campaign
-from blockshake.measurement.poses.posed_test import load_posed
 from blockshake.pages.drawing import BLUE, GREEN, GREY, ORANGE, save_picture
+from blockshake_flight.arcs import find_arcs, noise_of
+from blockshake_flight.causes import CAUSES
+from blockshake_flight.evidence import FlightFit
+from blockshake_flight.figure import plot_accelerations, plot_errors
+from blockshake_flight.posed_test import load_posed
+from blockshake_flight.replay import FlightModel, filmed_replay, start_arc
+from blockshake_flight.tumbling import tumbling
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "results" / "measured.md"

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from blockshake.diagnosis.flight.replay import FlightModel, filmed_replay, start_arc
-from blockshake.forces.flight.arcs import find_arcs
-from blockshake.forces.flight.impacts import find_impacts, impact_law, summary
 from blockshake.measurement.campaigns.campaign import load_campaign
-from blockshake.measurement.poses.posed_test import load_posed
 from blockshake.statistics.intervals import quantile_interval
+from blockshake_flight.arcs import find_arcs
+from blockshake_flight.impacts import find_impacts, impact_law, summary
+from blockshake_flight.posed_test import load_posed
+from blockshake_flight.replay import FlightModel, filmed_replay, start_arc
 
 ELLIPSE = (0.035, 0.025)  # m, half axes
 LS_DEM = {

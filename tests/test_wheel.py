@@ -47,6 +47,11 @@ def test_editors_find_types_of_an_installed_package(installed):
         assert (installed / "blockshake" / name).read_bytes() == (PACKAGE / name).read_bytes()
 
 
+def test_a_wheel_has_the_package_of_free_flight(installed):
+    own = {path.name for path in PACKAGE.with_name("blockshake_flight").glob("*.py")}
+    assert own == {path.name for path in (installed / "blockshake_flight").glob("*.py")}
+
+
 def test_commands_find_what_is_shipped(run, tmp_path):
     assert "3 blocks" in run("blockshake", "check", "configuration-1", "alkion").stdout
     assert run("blockshake", "sample", "--size", 10, "--output", "design.csv").returncode == 0

@@ -8,6 +8,7 @@ import contextlib
 import functools
 import hashlib
 import json
+import os
 import sys
 from pathlib import Path
 from typing import NamedTuple
@@ -15,16 +16,19 @@ from typing import NamedTuple
 from blockshake.caches import user_cache
 from blockshake.errors import InputError
 from blockshake.files import HOME, PACKAGE, content_digest, write_text
+from blockshake.measurement.campaigns.kinds import KINDS, CampaignKind, Late
 
 _SCRIPTS = HOME / "workflow" / "scripts"
 # These write logs, say where kernels are kept, or decide what is in the names of the files made and in the parameters
 # of rules: they compute nothing else.
 _COMPUTE_NOTHING = (
+    "measurement/campaigns/kinds.py",
     "caches.py",
     "log.py",
     "sources.py",
     "diagnosis/nominal/plan.py",
 )
+_COLUMNS = {name for name, kind in CampaignKind.__annotations__.items() if kind is Late}
 # Of these only the functions that are taken count, each with its own imports.
 _BY_FUNCTION = ("diagnosis/steps.py",)
 _READER = sys.version + Path(__file__).read_text(encoding="utf-8")  # by which a text is read
@@ -134,7 +138,7 @@ def _read(path, function=""):
         digest, imported = _parsed(text, function)
         with contextlib.suppress(InputError, OSError):
             write_text(kept, json.dumps([digest, imported, content_digest(digest, imported)]))
-    return _Source(bytes.fromhex(digest), [_imported(*one) for one in imported])
+    return _Source(bytes.fromhex(digest), [one for names in imported for one in _imported(*names)])
 
 
 def _parsed(text, function):
@@ -147,6 +151,7 @@ def _parsed(text, function):
         _drop_docstring(statement)
         if isinstance(statement, ast.ImportFrom) and (statement.module or "").startswith("blockshake"):
             imported += [[statement.module, alias.name] for alias in statement.names]
+    imported += [["", node.attr] for node in ast.walk(tree) if _is_of_kind(node)]
     return hashlib.sha256(ast.dump(tree).encode()).hexdigest(), imported
 
 
@@ -159,6 +164,15 @@ def _statements(tree):
         waiting += [child for child in ast.iter_child_nodes(node) if isinstance(child, _HOLD_STATEMENTS)]
 
 
+def _is_of_kind(node):
+    """Whether an expression is ``campaign.kind.decide`` or another column of functions of `CampaignKind`."""
+    return (
+        isinstance(node, ast.Attribute)
+        and getattr(node.value, "attr", "") == "kind"
+        and node.attr in _COLUMNS
+    )
+
+
 def _drop_docstring(node):
     body = getattr(node, "body", None)
     if body and isinstance(body[0], ast.Expr) and isinstance(getattr(body[0].value, "value", None), str):
@@ -167,16 +181,18 @@ def _drop_docstring(node):
 
 @functools.cache
 def _imported(module, name):
-    """Source that a name of a module comes from."""
+    """Sources that a name of a module comes from; without a module, those of a column of `KINDS`."""
+    if not module:
+        return [one for kind in KINDS for one in _imported(*getattr(kind, name))]
     inside = _file(f"{module}.{name}")
     if (PACKAGE / inside).is_file():
-        return inside
+        return [inside]
     source = _file(module)
-    return f"{source}:{name}" if source in _BY_FUNCTION else source
+    return [f"{source}:{name}" if source in _BY_FUNCTION else source]
 
 
 def _file(module):
-    """File of a module or of a package, in the package."""
-    path = PACKAGE.joinpath(*module.split(".")[1:])
+    """File of a module or of a package, from the package's folder."""
+    path = PACKAGE.parent.joinpath(*module.split("."))
     path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
-    return path.relative_to(PACKAGE).as_posix()
+    return Path(os.path.relpath(path, PACKAGE)).as_posix()

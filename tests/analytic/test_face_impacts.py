@@ -22,8 +22,8 @@ from face_impacts import (
 )
 from scipy.spatial.transform import Rotation
 
-from blockshake.forces.flight.impacts import find_impacts
-from blockshake.measurement.poses.posed_test import PosedTest
+from blockshake_flight.impacts import find_impacts
+from blockshake_flight.posed_test import PosedTest
 
 
 def _rocker(half, height):

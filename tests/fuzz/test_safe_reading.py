@@ -14,7 +14,7 @@ from blockshake.files import PACKAGE, load_yaml, named_file, parse_yaml, read_by
 from blockshake.paths import file_below
 
 ROOT = PACKAGE.parents[1]
-SOURCES = sorted([*PACKAGE.rglob("*.py"), *(ROOT / "workflow").rglob("*.py")])
+SOURCES = sorted([*PACKAGE.parent.rglob("*.py"), *(ROOT / "workflow").rglob("*.py")])
 # Numba's kernels, compiled here, in a folder of the user's own, each sealed by its digest
 OWN_PICKLES = {PACKAGE / "jit.py"}
 UNSAFE_MODULES = {

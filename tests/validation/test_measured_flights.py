@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from blockshake.diagnosis.flight.decide import decide_flights
 from blockshake.measurement.campaigns.campaign import load_campaign
-from blockshake.measurement.poses.posed_test import load_posed
+from blockshake_flight.decide import decide_flights
+from blockshake_flight.posed_test import load_posed
 
 ROOT = Path(__file__).parents[2]
 MEASURED = Path(os.environ.get("BLOCKSHAKE_SHARED") or ROOT.parent / "shared") / "measured"

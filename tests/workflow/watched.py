@@ -1,16 +1,23 @@
 """Which modules each rule runs, by the bytecode of their imports: an account that knows nothing of `sources.py`."""
 
 import functools
+import os
 from modulefinder import ModuleFinder
 from types import CodeType
 
 from blockshake.files import PACKAGE
+from blockshake.measurement.campaigns.kinds import KINDS, Late
 from blockshake.simulation.models import MODELS
 
 SCRIPTS = PACKAGE.parents[1] / "workflow" / "scripts"
 # their numbers are in parameters of rules, see `effort` in workflow/rules/diagnosed.smk
 PLANS = {"diagnosis/nominal/plan.py"}
-BESIDE = {"caches.py", "log.py", "sources.py"}  # what these compute is in no result
+BESIDE = {
+    "measurement/campaigns/kinds.py",
+    "caches.py",
+    "log.py",
+    "sources.py",
+}  # what these compute is in no result
 # modules that the tests of faults edit, by the work whose jobs are then due
 EDITS = {
     "study": (
@@ -54,6 +61,9 @@ def _imports(path, function=""):
         for what, taken in ModuleFinder().scan_opcodes(code):
             if what == "absolute_import":
                 found |= {(taken[1], name) for name in taken[0] or ("",)}
+        if "kind" in code.co_names:  # of a campaign, with a column of its row
+            named = [getattr(kind, name, None) for kind in KINDS for name in code.co_names]
+            found |= {tuple(one) for one in named if isinstance(one, Late)}
         inner = [one for one in code.co_consts if isinstance(one, CodeType)]
         left += [
             one for one in inner if not function or code.co_name != "<module>" or one.co_name == function
@@ -73,4 +83,4 @@ def _file(module):
     """File of a module or a package, None where there is none."""
     path = PACKAGE.parent.joinpath(*module.split("."))
     path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
-    return path.relative_to(PACKAGE).as_posix() if path.is_file() else None
+    return os.path.relpath(path, PACKAGE) if path.is_file() else None

@@ -102,7 +102,7 @@ def outcome_files(campaign):
 
     with refusing():
         loaded = load_campaign(CAMPAIGNS[campaign])
-    batches = -(-len(loaded.tests) // BATCH) if loaded.by_outcomes else 0
+    batches = -(-len(loaded.tests) // BATCH) if loaded.kind.batches else 0
     return expand(
         f"results/diagnosis/{campaign}/outcomes/{{number}}-{{solver}}.nc",
         number=range(batches),
@@ -156,7 +156,7 @@ def gain_files(wildcards):
     with refusing():
         acting = acting or load_parity(parity).findings
     campaign = plan(wildcards.campaign).campaign
-    if (acting or campaign.by_outcomes) and campaign.sealed:
+    if (acting or campaign.kind.batches) and campaign.sealed:
         return expand(
             f"results/diagnosis/{wildcards.campaign}/{{name}}",
             name=["gain.json", "gain.nc"],

@@ -31,28 +31,28 @@ def decide(folder, without, files=None):
     ``files.outcomes`` are the batches of `simulate_outcomes`; a campaign with readings has none. ``files.clean`` are
     the files of `simulate_clean`, none where no motion is known.
     """
-    from blockshake.diagnosis.answer.decide import decide, undecided
-    from blockshake.diagnosis.answer.thresholds import thresholds_of
-    from blockshake.diagnosis.evidence.seen_campaign import see_campaign
-    from blockshake.diagnosis.flight.decide import decide_flights
-    from blockshake.diagnosis.outcomes.decide import decide_outcomes
-    from blockshake.files import load_json
-    from blockshake.geometry.structure import load_structure
     from blockshake.measurement.campaigns.campaign import load_campaign
-    from blockshake.measurement.poses.posed_test import load_posed
     from blockshake.parity.parity import UNCHECKED
 
     campaign = load_campaign(folder)
-    if campaign.still:
-        return DecidedCampaign(UNCHECKED, *decide_flights(load_posed(campaign, list(campaign.open)), without))
-    if campaign.by_outcomes:
-        return DecidedCampaign(UNCHECKED, *decide_outcomes(campaign, files.outcomes, without))
+    decision, evidence, *parity = campaign.kind.decide(campaign, files, without)
+    return DecidedCampaign(*(parity or [UNCHECKED]), decision, evidence)
+
+
+def decide_shaken(campaign, files, without):
+    """Decision, evidence and parity of a campaign with base motion."""
+    from blockshake.diagnosis.answer.decide import decide, undecided
+    from blockshake.diagnosis.answer.thresholds import thresholds_of
+    from blockshake.diagnosis.evidence.seen_campaign import see_campaign
+    from blockshake.files import load_json
+    from blockshake.geometry.structure import load_structure
+
     seen = see_campaign(campaign, without)
     unseen = [f"{name} is not judged: {reason}" for name, reason in seen.unseen.items()]
     if not seen.tests:
-        return DecidedCampaign(seen.parity, *undecided(load_structure(campaign.structure), without, unseen))
+        return *undecided(load_structure(campaign.structure), without, unseen), seen.parity
     runs = [run for path in files.clean for run in load_json(path)] if files else []
-    return DecidedCampaign(seen.parity, *decide(seen.tests, without, unseen, thresholds_of(runs)))
+    return *decide(seen.tests, without, unseen, thresholds_of(runs)), seen.parity
 
 
 def simulate_nominal(folder, effort, number, solver, store):
@@ -138,25 +138,23 @@ def measure_gain(folder, effort, files):
     are readings.
     """
     from blockshake.diagnosis.answer.decision import check_frozen, load_decision
+    from blockshake.measurement.campaigns.campaign import load_campaign
+
+    check_frozen(files.frozen, files.decision)
+    campaign = load_campaign(folder)
+    return campaign.kind.measure_gain(campaign, load_decision(files.decision), effort, files)
+
+
+def measure_shaken_gain(campaign, decision, effort, files):
+    """`CampaignGain` of a campaign with base motion, see `measure_gain`."""
     from blockshake.diagnosis.evidence.seen_campaign import see_campaign, see_sealed
-    from blockshake.diagnosis.flight.gain import flight_gain
     from blockshake.diagnosis.gain.campaign_gain import campaign_gain, with_rows
     from blockshake.diagnosis.gain.row_gain import row_gain
     from blockshake.diagnosis.gain.sensor_gain import sensor_gain
     from blockshake.diagnosis.misfit.judged_test import measured_histories
     from blockshake.diagnosis.nominal.plan import plan_diagnosis
-    from blockshake.diagnosis.outcomes.gain import outcome_gain
-    from blockshake.measurement.campaigns.campaign import load_campaign
-    from blockshake.measurement.poses.posed_test import load_posed
     from blockshake.parity.parity import load_parity
 
-    check_frozen(files.frozen, files.decision)
-    campaign, decision = load_campaign(folder), load_decision(files.decision)
-    if campaign.still:
-        opened, sealed = (load_posed(campaign, list(tests)) for tests in (campaign.open, campaign.sealed))
-        return flight_gain(opened, sealed, decision)
-    if campaign.by_outcomes:
-        return outcome_gain(campaign, files.outcomes, decision)
     findings = load_parity(files.parity).findings
     if not decision.parts:
         return sensor_gain(campaign, decision.tests, findings)
@@ -164,7 +162,7 @@ def measure_gain(folder, effort, files):
     rows = row_gain(decision, see_campaign(campaign).tests, sealed.tests)
     if not files.extended:
         return with_rows(None, *rows)
-    plan = plan_diagnosis(folder, effort)
+    plan = plan_diagnosis(campaign.folder, effort)
     responses = campaign_gain(
         plan,
         measured_histories(campaign, plan.tests, findings),

@@ -143,3 +143,10 @@ def percent_words(contrast):
     return (
         f"{100.0 * contrast.estimate:.0f} % ({100.0 * contrast.lower:.0f} to {100.0 * contrast.upper:.0f} %)"
     )
+
+
+def estimate_in_si(estimate):
+    """An `Estimate` in words, in its own unit: sizes of small bodies are small."""
+    values = (estimate.estimate, estimate.lower, estimate.upper)
+    middle, lower, upper = (f"{value:.3g}" for value in values)
+    return f"{middle} ({lower} to {upper}){'' if estimate.unit == '1' else ' ' + estimate.unit}"

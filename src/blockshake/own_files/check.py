@@ -112,11 +112,23 @@ def _with_remarks(lines, remarks):
 
 def _campaign_line(folder):
     campaign = load_campaign(folder)
-    lines = campaign_lines(folder) + ([] if campaign.still or campaign.by_outcomes else sight_lines(campaign))
-    remarks = [] if campaign.still else structure_remarks(load_structure(campaign.structure))
-    for test in campaign.tests.values() if campaign.by_outcomes else ():
-        remarks += [f"{test.name}: {remark}" for remark in motion_remarks(commanded_motion(campaign, test))]
+    lines = campaign_lines(folder)
+    more, remarks = campaign.kind.remark(campaign)
+    lines += more
     return _with_remarks(lines, [remark for remark in remarks if not any(remark in line for line in lines)])
+
+
+def remark_shaken(campaign):
+    """Lines on what the sensors show of a stack, and remarks on its structure."""
+    return sight_lines(campaign), structure_remarks(load_structure(campaign.structure))
+
+
+def remark_outcomes(campaign):
+    """No line; remarks on the structure and the motions of a campaign of outcomes."""
+    remarks = structure_remarks(load_structure(campaign.structure))
+    for test in campaign.tests.values():
+        remarks += [f"{test.name}: {remark}" for remark in motion_remarks(commanded_motion(campaign, test))]
+    return [], remarks
 
 
 def _import_line(source):

@@ -27,7 +27,7 @@ from blockshake.measurement.campaigns.faulty_readings import stuck
 from blockshake.measurement.campaigns.lost_markers import lost_words
 from blockshake.measurement.campaigns.recorded_test import checked_test
 from blockshake.measurement.checks.campaign_check import campaign_lines
-from blockshake.measurement.poses.pose_file import ANGLE, QUATERNION, free_body, poses_of_columns
+from blockshake.measurement.motion.pose_columns import ANGLE, QUATERNION, free_body, poses_of_columns
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
 from blockshake.measurement.sensors.transducers import transducer_names
 from blockshake.own_files.import_map import ImportMap, load_map

@@ -63,7 +63,7 @@ class Plan:
         So it is of free flight and of outcomes too.
         """
         campaign = self.campaign
-        if campaign.still or campaign.by_outcomes:
+        if not campaign.kind.ensembles:
             return {}
         if any(commanded_motion(campaign, campaign.tests[name]) is None for name in self.open):
             return {}
@@ -107,7 +107,7 @@ def plan_diagnosis(folder, effort):
         raise InputError("effort", str(effort), f"expected one of {', '.join(EFFORTS)}")
     campaign, effort = load_campaign(folder), EFFORTS[effort]
     names = open_tests(campaign)
-    chosen = [] if campaign.still or campaign.by_outcomes else simulated_tests(campaign, names, effort.tests)
+    chosen = simulated_tests(campaign, names, effort.tests) if campaign.kind.ensembles else []
     for name in chosen:
         planned_motion(campaign, name)  # which no job should be the first to miss
     return Plan(campaign, effort, names, chosen)
@@ -127,9 +127,7 @@ def open_tests(campaign):
             "tests",
             "expected a test with the role fit or select, found none",
         )
-    if campaign.still or campaign.by_outcomes:
-        return list(campaign.open)
-    return open_test_names(campaign)
+    return open_test_names(campaign) if campaign.kind.ensembles else list(campaign.open)
 
 
 def simulated_tests(campaign, names, most):

@@ -34,6 +34,11 @@ class DecidedOutcomes(NamedTuple):
     evidence: xr.Dataset
 
 
+def decide(campaign, files, without):
+    """`DecidedOutcomes` of a campaign by the files of its step, see `CampaignKind`."""
+    return decide_outcomes(campaign, files.outcomes, without)
+
+
 def decide_outcomes(campaign, files, without=()):
     """Decide what the outcomes of a campaign's open tests speak for.
 

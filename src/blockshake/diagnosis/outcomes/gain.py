@@ -9,6 +9,11 @@ from blockshake.diagnosis.verdict.verdict import Contrast, Gain, MeasuredGain
 from blockshake.statistics.resampling import resampled_weights
 
 
+def measure_gain(campaign, decision, effort, files):
+    """`CampaignGain` of a campaign by the files of its step, see `CampaignKind`."""
+    return outcome_gain(campaign, files.outcomes, decision)
+
+
 def outcome_gain(campaign, files, decision):
     """`CampaignGain` of a decision's causes on sealed tests.
 

@@ -4,10 +4,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from blockshake.diagnosis.flight.section import cause_words, odds_section
 from blockshake.diagnosis.outcomes.decide import CAUSES
 from blockshake.diagnosis.outcomes.figure import plot_fragility, plot_survival
-from blockshake.diagnosis.verdict.found import document, load_found
+from blockshake.diagnosis.verdict.found import cause_words, document, load_found, odds_section
 from blockshake.diagnosis.wording import percent_words
 from blockshake.effects.registry import title_of
 from blockshake.geometry.structure import load_structure
@@ -25,8 +24,8 @@ MODELS_IN_WORDS = {
 _CLASSES = (0.0, 0.1, 0.3, 0.7, 0.9, 1.0)  # of the predicted chance, for the reliability
 
 
-def compose_outcomes(campaign, results, effort):
-    """`Document` of the diagnosis of a campaign of outcomes, from the folder of its results."""
+def compose_outcomes(campaign, results, effort, track_record):
+    """`Document` of the diagnosis of a campaign of outcomes, from the folder of its results; it has no track record."""
     found = load_found(results)
     tests = count_words(len(campaign.tests), "test")
     subtitle = f"{load_structure(campaign.structure).file.name}, {tests} that it survived or not"

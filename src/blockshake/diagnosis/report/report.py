@@ -1,11 +1,7 @@
 """The report of a diagnosis: one page and one PDF from the same content."""
 
-from pathlib import Path
-
-from blockshake.diagnosis.flight.section import compose_flights
 from blockshake.diagnosis.gain.section import effect_section, gain_section
 from blockshake.diagnosis.misfit.section import misfit_section
-from blockshake.diagnosis.outcomes.section import compose_outcomes
 from blockshake.diagnosis.report.answer_section import answer_section
 from blockshake.diagnosis.report.content import load_diagnosed
 from blockshake.diagnosis.report.history_section import history_section
@@ -56,14 +52,14 @@ def make_diagnosis_report(campaign, results, effort, track_record, html, pdf):
         A file is missing or holds something else.
     """
     measured = load_campaign(campaign)
-    if measured.still:
-        document = compose_flights(measured, Path(results), effort)
-    elif measured.by_outcomes:
-        document = compose_outcomes(measured, Path(results), effort)
-    else:
-        document = compose_diagnosis(load_diagnosed(campaign, results, effort, track_record))
+    document = measured.kind.compose(measured, results, effort, track_record)
     write_html(html, document)
     write_pdf(pdf, document)
+
+
+def compose_shaken(campaign, results, effort, track_record):
+    """`Document` of the diagnosis of a campaign with base motion, from the folder of its results."""
+    return compose_diagnosis(load_diagnosed(campaign.folder, results, effort, track_record))
 
 
 def compose_diagnosis(diagnosed):

@@ -6,10 +6,13 @@ from typing import NamedTuple
 import xarray as xr
 
 from blockshake.diagnosis.answer.decision import Decision, load_decision
+from blockshake.diagnosis.answer.thresholds import ODDS
 from blockshake.diagnosis.verdict.verdict import Verdict, load_verdict
+from blockshake.diagnosis.wording import estimate_in_si, times_words
 from blockshake.files import file_digest
-from blockshake.pages.blocks import Document, Section, numbered
+from blockshake.pages.blocks import Document, Section, Table, numbered
 from blockshake.pages.origin import command_blocks, digests_table, software_versions, versions_table
+from blockshake.pages.wording import number
 from blockshake.store import load_made
 
 
@@ -28,6 +31,7 @@ class Found(NamedTuple):
 
 def load_found(folder):
     """`Found` of a folder with ``verdict.json`` and what it rests on."""
+    folder = Path(folder)
     verdict = load_verdict(folder / "verdict.json")
     return Found(
         folder=folder,
@@ -36,6 +40,39 @@ def load_found(folder):
         evidence=load_made(folder / "evidence.nc"),
         gain=load_made(folder / "gain.nc") if verdict.gain else None,
     )
+
+
+def cause_words(cause, title):
+    """A cause with its body and its sizes in their own units."""
+    sizes = ", ".join(f"{name} {estimate_in_si(one)}" for name, one in cause.parameters.items())
+    return f"{title}, {cause.place['body']} ({sizes})"
+
+
+def odds_section(decision, titles, readings):
+    """Odds and gains of all rivals, one table a cause; None where nothing acts.
+
+    ``titles`` has the words for a cause by its name, and ``readings`` says what the odds rest on.
+    """
+    blocks = []
+    for part in decision.parts:
+        rows = tuple(
+            (titles[name], _less_likely(part, name), number(part.gains[name]))
+            for name in sorted(part.odds, key=part.odds.get)
+        )
+        blocks.append(
+            Table(
+                f"How many times less likely each cause is than {titles[part.causes[0].name]}, the likeliest, by "
+                f"{readings} alone, and its gain over nothing [nats].",
+                ("Cause", "Less likely", "Gain"), rows, "lrr",
+            )
+        )  # fmt: skip
+    return Section("Odds of all causes", "odds", tuple(blocks)) if blocks else None
+
+
+def _less_likely(part, name):
+    if name == part.causes[0].name:
+        return "the likeliest"
+    return "not told apart" if part.odds[name] < ODDS else times_words(part.odds[name])
 
 
 def document(campaign, effort, found, subtitle, sections):

@@ -13,6 +13,7 @@ from blockshake.files import AnyPath, load_yaml, shipped_names
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.clocks import from_command, on_one_clock
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
+from blockshake.measurement.campaigns.kinds import CampaignKind, kind_of
 from blockshake.measurement.campaigns.recorded_test import read_test
 from blockshake.measurement.sensors.instruments import Sensors
 from blockshake.paths import check_plain, file_below
@@ -103,14 +104,9 @@ class Campaign(Shown):
         return [keys, *([getattr(test, key) or "" for key in keys] for test in self.tests.values())]
 
     @property
-    def still(self) -> bool:
-        """Whether the ground is at rest in all tests, in which one body is filmed as poses."""
-        return all(test.motion is None for test in self.tests.values())
-
-    @property
-    def by_outcomes(self) -> bool:
-        """Whether all that is known of the tests is which of them the body survived."""
-        return all(test.outcome is not None for test in self.tests.values())
+    def kind(self) -> CampaignKind:
+        """Base motion, no base motion, or outcomes alone: how the campaign is checked and diagnosed."""
+        return kind_of(self.tests.values())
 
     @property
     def open(self) -> dict[str, MeasuredTest]:

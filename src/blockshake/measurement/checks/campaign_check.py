@@ -18,7 +18,6 @@ from blockshake.measurement.campaigns.commanded_motion import (
 from blockshake.measurement.campaigns.faulty_readings import faulty_lines
 from blockshake.measurement.campaigns.starting_places import starting_lines
 from blockshake.measurement.checks.against_slab import carried_remarks, clock_remarks
-from blockshake.measurement.checks.outcomes import outcome_lines
 from blockshake.measurement.checks.quiet_noise import (
     accelerometer_noise,
     accelerometer_remarks,
@@ -27,7 +26,6 @@ from blockshake.measurement.checks.quiet_noise import (
     marker_noise,
 )
 from blockshake.measurement.motion.fall import find_fall
-from blockshake.measurement.poses.posed_check import posed_lines
 from blockshake.measurement.sensors.accelerometers import shaken_channels
 from blockshake.measurement.sensors.found_noise import found_noise, noise_remarks
 from blockshake.measurement.sensors.markers import (
@@ -59,11 +57,12 @@ def campaign_lines(folder):
         an accelerometer that reads in g.
     """
     campaign = load_campaign(folder)
-    if campaign.still:
-        return posed_lines(campaign)
+    return campaign.kind.check(campaign)
+
+
+def shaken_lines(campaign):
+    """Lines of a campaign with base motion and readings, see `campaign_lines`."""
     structure = load_structure(campaign.structure)
-    if campaign.by_outcomes:
-        return outcome_lines(campaign)
     lines = [
         f"campaign {campaign.name} on {campaign.structure}: {len(campaign.tests)} tests; stated noise of markers "
         f"{campaign.sensors.marker_noise:g} m, of accelerometers {campaign.sensors.accelerometer_noise:g} m/s2"

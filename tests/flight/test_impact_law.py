@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from blockshake.forces.flight.impacts import impact_law
+from blockshake_flight.impacts import impact_law
 
 INERTIA = np.diag([2e-4, 5e-4, 3e-4])  # m2
 ARM = np.array([0.02, -0.01, -0.03])

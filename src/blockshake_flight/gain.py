@@ -6,15 +6,16 @@ from itertools import product
 import numpy as np
 import xarray as xr
 
-from blockshake.diagnosis.flight.causes import CAUSES
-from blockshake.diagnosis.flight.evidence import FlightFit, flight_rows
-from blockshake.diagnosis.flight.replay import FlightModel, replay, start_arc
 from blockshake.diagnosis.gain.campaign_gain import CampaignGain
 from blockshake.diagnosis.nominal.ensemble import DISCREPANCY, EXTENDED, NOMINAL, RECALIBRATED
 from blockshake.diagnosis.verdict.verdict import Contrast, Gain, MeasuredGain
-from blockshake.forces.flight.arcs import find_arcs
-from blockshake.forces.flight.inertia import OF_RATIOS, seen_ratios
 from blockshake.statistics.resampling import resampled_weights
+from blockshake_flight.arcs import find_arcs
+from blockshake_flight.causes import CAUSES
+from blockshake_flight.evidence import FlightFit, flight_rows
+from blockshake_flight.inertia import OF_RATIOS, seen_ratios
+from blockshake_flight.posed_test import load_posed
+from blockshake_flight.replay import FlightModel, replay, start_arc
 
 _FRICTION = (0.03, 0.06, 0.1, 0.15, 0.22, 0.33, 0.5)
 _RESTITUTION = (0.0, 0.15, 0.3, 0.45, 0.6)
@@ -25,6 +26,12 @@ _MOST = 60  # open tests that a model is fitted to
 _EARLY = 0.1  # s after the first flight
 _ACTING = ("sensor-gain", "eccentricity", "push", "drag")  # causes that a replay can have
 KINDS = (NOMINAL, RECALIBRATED, DISCREPANCY, EXTENDED)
+
+
+def measure_gain(campaign, decision, effort, files):
+    """`CampaignGain` of a campaign, see `CampaignKind`; at every effort the same, and by no file."""
+    opened, sealed = (load_posed(campaign, list(tests)) for tests in (campaign.open, campaign.sealed))
+    return flight_gain(opened, sealed, decision)
 
 
 def flight_gain(opened, sealed, decision):

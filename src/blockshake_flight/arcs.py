@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import null_space
 
-from blockshake.measurement.poses.posed_test import CLEAR
+from blockshake_flight.posed_test import CLEAR
 
 LEAST = 8  # readings of a flight; four are taken by a cubic
 _BROKEN = 4.0  # times the usual residual about a cubic: something was hit, or the tracking slipped

@@ -2,16 +2,19 @@
 
 import numpy as np
 
-from blockshake.diagnosis.answer.thresholds import ODDS
-from blockshake.diagnosis.flight.causes import CAUSES
-from blockshake.diagnosis.flight.decide import estimate_in_si
-from blockshake.diagnosis.flight.figure import plot_accelerations, plot_errors
-from blockshake.diagnosis.verdict.found import document, load_found
-from blockshake.diagnosis.wording import percent_words, times_words
+from blockshake.diagnosis.verdict.found import (
+    cause_words,
+    document,
+    load_found,
+    odds_section,
+)
+from blockshake.diagnosis.wording import estimate_in_si, percent_words
 from blockshake.geometry.structure import load_structure
 from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import BLUE, GREEN, GREY, ORANGE, svg_of
 from blockshake.pages.wording import MISSING, count_words, number, sentence_case
+from blockshake_flight.causes import CAUSES
+from blockshake_flight.figure import plot_accelerations, plot_errors
 
 _MODELS = {"nominal": GREY, "recalibrated": ORANGE, "discrepancy": GREEN, "extended": BLUE}
 TITLES = {cause.name: cause.title for cause in CAUSES}
@@ -23,8 +26,11 @@ _WORDS = {
 }
 
 
-def compose_flights(campaign, results, effort):
-    """`Document` of the diagnosis of a campaign without base motion, from the folder of its results."""
+def compose_flights(campaign, results, effort, track_record):
+    """`Document` of the diagnosis of a campaign without base motion, from the folder of its results.
+
+    It has no track record.
+    """
     found = load_found(results)
     tests = count_words(len(found.decision.tests), "test")
     subtitle = f"{load_structure(campaign.structure).file.name} over a ground at rest, {tests}"
@@ -76,41 +82,8 @@ def _largest(cause):
     return f"{name} of {TITLES[cause.name]}", estimate_in_si(estimate), "90 % interval"
 
 
-def cause_words(cause, title):
-    """A cause with its body and its sizes in their own units."""
-    sizes = ", ".join(f"{name} {estimate_in_si(one)}" for name, one in cause.parameters.items())
-    return f"{title}, {cause.place['body']} ({sizes})"
-
-
 def _gain_words(verdict):
     return percent_words(verdict.gain.recalibrated) if verdict.gain else "not measured"
-
-
-def odds_section(decision, titles, readings):
-    """Odds and gains of all rivals, one table a cause; None where nothing acts.
-
-    ``titles`` has the words for a cause by its name, and ``readings`` says what the odds rest on.
-    """
-    blocks = []
-    for part in decision.parts:
-        rows = tuple(
-            (titles[name], _less_likely(part, name), number(part.gains[name]))
-            for name in sorted(part.odds, key=part.odds.get)
-        )
-        blocks.append(
-            Table(
-                f"How many times less likely each cause is than {titles[part.causes[0].name]}, the likeliest, by "
-                f"{readings} alone, and its gain over nothing [nats].",
-                ("Cause", "Less likely", "Gain"), rows, "lrr",
-            )
-        )  # fmt: skip
-    return Section("Odds of all causes", "odds", tuple(blocks)) if blocks else None
-
-
-def _less_likely(part, name):
-    if name == part.causes[0].name:
-        return "the likeliest"
-    return "not told apart" if part.odds[name] < ODDS else times_words(part.odds[name])
 
 
 def impacts_section(found):

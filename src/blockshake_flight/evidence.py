@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from blockshake.diagnosis.evidence.likelihood import Likelihood, from_rows
-from blockshake.diagnosis.flight.causes import CAUSES, air_drag, nuisances
-from blockshake.forces.flight.arcs import noise_of
-from blockshake.forces.flight.paths import dragged_by_square, fallen, off_centre
+from blockshake_flight.arcs import noise_of
+from blockshake_flight.causes import CAUSES, air_drag, nuisances
+from blockshake_flight.paths import dragged_by_square, fallen, off_centre
 
 _INDEPENDENT = 3.0  # numbers that a flight and axis tell, if what its readings leave is smooth and no noise
 _ROUNDS = 4  # of weighing the flights

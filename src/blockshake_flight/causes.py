@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from blockshake.forces.flight.paths import (
+from blockshake_flight.paths import (
     dragged,
     dragged_by_square,
     dragged_dry,

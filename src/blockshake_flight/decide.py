@@ -11,15 +11,17 @@ from blockshake.diagnosis.answer.decide import chance, kind_of, probabilities
 from blockshake.diagnosis.answer.decision import Cause, Decision, Estimate, Part
 from blockshake.diagnosis.answer.size import FORM
 from blockshake.diagnosis.answer.thresholds import by_odds
-from blockshake.diagnosis.flight.causes import CAUSES
-from blockshake.diagnosis.flight.evidence import explain, explained_share, flight_rows
 from blockshake.diagnosis.outside.registry import FORMS
+from blockshake.diagnosis.wording import estimate_in_si
 from blockshake.effects.registry import EFFECTS
 from blockshake.errors import InputError
-from blockshake.forces.flight.arcs import find_arcs
-from blockshake.forces.flight.impacts import find_impacts, summary
-from blockshake.forces.flight.inertia import seen_ratios
-from blockshake.forces.flight.paths import fallen
+from blockshake_flight.arcs import find_arcs
+from blockshake_flight.causes import CAUSES
+from blockshake_flight.evidence import explain, explained_share, flight_rows
+from blockshake_flight.impacts import find_impacts, summary
+from blockshake_flight.inertia import seen_ratios
+from blockshake_flight.paths import fallen
+from blockshake_flight.posed_test import load_posed
 
 _NINETY = 1.645  # standard deviations
 _READINGS = "free flight"
@@ -30,6 +32,11 @@ class DecidedFlights(NamedTuple):
 
     decision: Decision
     evidence: xr.Dataset
+
+
+def decide(campaign, files, without):
+    """`DecidedFlights` of a campaign, see `CampaignKind`; of ``files`` none is read."""
+    return decide_flights(load_posed(campaign, list(campaign.open)), without)
 
 
 def decide_flights(posed, without=()):
@@ -245,13 +252,6 @@ def _inertia_words(ratios):
 
 def _size_words(posed, fit):
     return ", ".join(f"{name} {estimate_in_si(one)}" for name, one in _sizes(posed, fit).items())
-
-
-def estimate_in_si(estimate):
-    """An `Estimate` in words, in its own unit: sizes of small bodies are small."""
-    values = (estimate.estimate, estimate.lower, estimate.upper)
-    middle, lower, upper = (f"{value:.3g}" for value in values)
-    return f"{middle} ({lower} to {upper}){'' if estimate.unit == '1' else ' ' + estimate.unit}"
 
 
 def impact_words(found):

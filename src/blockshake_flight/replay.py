@@ -5,14 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
-from blockshake.diagnosis.flight.causes import air_drag
 from blockshake.dynamics.motion import GroundMotion, rest_table
-from blockshake.forces.flight.inertia import with_inertia
-from blockshake.forces.flight.paths import dragged_by_square, fallen, off_centre
-from blockshake.forces.flight.tumbling import spins, tumbling
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.measurement.poses.posed_test import PosedTest
 from blockshake.simulation.simulate import simulate
+from blockshake_flight.causes import air_drag
+from blockshake_flight.inertia import with_inertia
+from blockshake_flight.paths import dragged_by_square, fallen, off_centre
+from blockshake_flight.posed_test import PosedTest
+from blockshake_flight.tumbling import spins, tumbling
 
 MODEL = "nscd-rigid"
 

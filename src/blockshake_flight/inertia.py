@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from blockshake.errors import InputError
-from blockshake.forces.flight.tumbling import tumbling
+from blockshake_flight.tumbling import tumbling
 
 # logarithms of the moments along x, y, z of zero sum, per logarithm of the ratios of y and of z to x
 OF_RATIOS = np.array([[-1.0, 2.0, -1.0], [-1.0, -1.0, 2.0]]) / 3.0

@@ -6,7 +6,8 @@ import numpy as np
 
 from blockshake.errors import InputError
 from blockshake.geometry.structure import Structure, load_structure
-from blockshake.measurement.poses.pose_file import free_body, read_poses
+from blockshake.measurement.motion.pose_columns import free_body
+from blockshake_flight.pose_file import read_poses
 
 CLEAR = 0.03  # of the body's radius: farther from the ground than tracked corners sink into it at impacts
 _SUNK, _SHARE = 0.15, 0.05  # of the radius; of the readings, which no tracking error leaves deeper

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from blockshake.forces.flight.tumbling import spins, tumbling
+from blockshake_flight.tumbling import spins, tumbling
 
 _TOGETHER = 0.05  # of the radius, within which the lowest vertices hit together
 _KINDS = {1: "corner", 2: "edge"}  # by vertices that hit together; more are a face

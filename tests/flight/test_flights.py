@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from made_flights import MASS, SIDE, campaign, drag
 
-from blockshake.diagnosis.flight.decide import decide_flights
-from blockshake.diagnosis.flight.gain import flight_gain
-from blockshake.diagnosis.flight.replay import FlightModel, replay, start_arc
-from blockshake.forces.flight.arcs import find_arcs
-from blockshake.forces.flight.impacts import find_impacts, summary
-from blockshake.forces.flight.inertia import seen_ratios
+from blockshake_flight.arcs import find_arcs
+from blockshake_flight.decide import decide_flights
+from blockshake_flight.gain import flight_gain
+from blockshake_flight.impacts import find_impacts, summary
+from blockshake_flight.inertia import seen_ratios
+from blockshake_flight.replay import FlightModel, replay, start_arc
 
 OPEN, SEALED = range(16), range(16, 24)
 

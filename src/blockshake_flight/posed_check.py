@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.measurement.poses.posed_test import CLEAR, load_posed
+from blockshake_flight.posed_test import CLEAR, load_posed
 
 _MOST = 10  # tests that are described one by one
 
@@ -39,3 +39,8 @@ def posed_lines(campaign):
     if len(posed.tests) > _MOST:
         lines.append(f"  and {len(posed.tests) - _MOST} more tests")
     return lines + (["remarks:", *remarks] if remarks else ["no inconsistency found"])
+
+
+def remark(campaign):
+    """No line and no remark beyond those of `posed_lines`."""
+    return [], []

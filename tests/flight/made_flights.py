@@ -8,8 +8,8 @@ import numpy as np
 from blockshake.dynamics.motion import GroundMotion, rest_table
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import build_structure
-from blockshake.measurement.poses.posed_test import PosedCampaign, PosedTest
 from blockshake.simulation.simulate import simulate
+from blockshake_flight.posed_test import PosedCampaign, PosedTest
 
 RATE = 200.0  # Hz
 NOISE, TURN_NOISE = 5e-5, 1e-3  # m, rad

@@ -1,5 +1,8 @@
 """Poses from tables and netCDF files, and one clear line for each file that is wrong."""
 
+import sys
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -10,10 +13,10 @@ from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.checks.campaign_check import campaign_lines
-from blockshake.measurement.poses.pose_file import read_poses
-from blockshake.measurement.poses.posed_test import load_posed
 from blockshake.own_files.import_campaign import make_campaign
 from blockshake.own_files.import_map import load_map
+from blockshake_flight.pose_file import read_poses
+from blockshake_flight.posed_test import load_posed
 
 STRUCTURE = {
     "name": "one block",
@@ -137,6 +140,18 @@ def test_a_campaign_without_base_motion_is_described(tmp_path):
     assert "1 test of block (23.55 kg) over a ground at rest" in lines[0]
     assert "0.39 s at 100 Hz, poses in the plane of x and z, 0 % gaps" in lines[1]
     assert lines[-1] == "no inconsistency found"
+
+
+@pytest.mark.usefixtures("structure")
+def test_a_campaign_without_base_motion_needs_the_package_of_free_flight(tmp_path, monkeypatch):
+    for module in [name for name in sys.modules if name.startswith("blockshake_flight")]:
+        monkeypatch.delitem(sys.modules, module)
+    without = [folder for folder in sys.path if not Path(folder, "blockshake_flight").is_dir()]
+    monkeypatch.setattr(sys, "path", without)
+    with pytest.raises(
+        InputError, match=r"campaign\.yaml: tests: expected a motion .* package blockshake_flight"
+    ):
+        campaign_lines(campaign(tmp_path))
 
 
 @pytest.mark.usefixtures("structure")

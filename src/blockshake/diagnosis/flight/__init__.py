@@ -1,1 +1,0 @@
-"""Diagnosis of a campaign of drops and tosses: free flight first, then impacts, then whole paths."""
