@@ -9,7 +9,7 @@ from page import CLAIMS, Page
 from blockshake.diagnosis.answer.decision import Part
 from blockshake.diagnosis.report.content import load_diagnosed
 from blockshake.diagnosis.report.report import compose_diagnosis, make_diagnosis_report
-from blockshake.diagnosis.report.statement import not_told, statement
+from blockshake.diagnosis.report.statement import not_told, statement, until_then
 from blockshake.diagnosis.verdict.track_record import procedure_digest
 from blockshake.diagnosis.verdict.verdict import NOTHING_TO_GAIN, load_verdict
 from blockshake.errors import InputError
@@ -95,16 +95,15 @@ def test_the_box_has_the_numbers_of_the_verdict(fakes, documents):
 
 
 def test_the_card_of_the_gain_agrees_with_the_table(found):
-    """A recalibrated model without an error to remove stands beside a gain over the nominal one."""
+    """A recalibrated model without an error to remove stands with a gain over the nominal one."""
     one = found["named"]
-    gain = one.verdict.row_gain.model_copy(update={"recalibrated": NOTHING_TO_GAIN})
-    again = replace(one, verdict=one.verdict.model_copy(update={"row_gain": gain, "gain": None}))
-    document = compose_diagnosis(again)
+    gain = one.verdict.gain.model_copy(update={"recalibrated": NOTHING_TO_GAIN})
+    document = compose_diagnosis(replace(one, verdict=one.verdict.model_copy(update={"gain": gain})))
     _, value, note = document.sections[0].blocks[0].facts[2]
     assert value == "no error to remove"
-    assert note.endswith("of the nominal model's: 80 % (70 to 90 %)")
-    rows = dict(row[:2] for row in blocks_of(document, "table", "gain")[0].rows)
-    assert rows["the nominal model"] == "80 % (70 to 90 %)"
+    assert "of the nominal model's: 60 % (50 to 70 %)" in note
+    rows = {row[0]: row[2] for row in blocks_of(document, "table", "gain")[0].rows}
+    assert rows["the nominal model"] == "60 % (50 to 70 %)"
     assert rows["the nominal model, recalibrated on the open tests"] == value
 
 
@@ -117,6 +116,15 @@ def test_a_gain_on_forces_is_no_headline_where_that_on_responses_may_be_nothing(
     assert value == "none shown"
     assert "0 % (-10 to 10 %)" in note
     assert note.endswith("on forces 80 % (70 to 90 %)")
+
+
+def test_a_gain_on_forces_alone_is_no_prediction(documents):
+    """Nothing was simulated at quick effort; what the forces gain stands in the note."""
+    _, value, note = documents["unknown"].sections[0].blocks[0].facts[2]
+    assert value == "not predicted"
+    assert note == (
+        "effort quick simulates no response; the forces read off the sealed tests: 80 % (70 to 90 %)"
+    )
 
 
 def test_none_says_which_sizes_would_have_been_seen(documents):
@@ -232,9 +240,9 @@ def test_tests_sensors_and_files_are_accounted_for(pages, found):
     assert "214 hypotheses on" in text
     assert "Not checked against others" in text
     assert "2 accelerometer channels" in text
-    assert "Accelerometer channels whose gain the markers of their bodies tell: block-1-acc-x." in text
+    assert "Accelerometer channels whose gain the markers of their bodies show: block-1-acc-x." in text
     assert "the markers do not show what they read or it is small: block-1-acc-z." in text
-    assert "whose gain the markers of their bodies tell: wire-1." in text
+    assert "whose gain the markers of their bodies show: wire-1." in text
     assert "these hardly moved apart: wire-2." in text
     assert "The rotation of block-4, which has one marker." in text
     assert not [path for path in found["named"].digests if any(name in path for name in SEALED)]
@@ -244,7 +252,8 @@ def test_a_sensor_s_fault_alone_is_the_answer(tmp_path):
     one = load_diagnosed(*FakeDiagnosis(tmp_path, "none", findings=[gain_finding()]).arguments())
     assert one.verdict.decision == "named"
     assert statement(one).startswith("Probable: gain of a marker (block-2-face), error 3")
-    assert "undamaged blocks make all forces" in statement(one)
+    assert "undamaged blocks explain all forces" in statement(one)
+    assert "take the fault out of the readings" in until_then(one)
     document = compose_diagnosis(one)
     (table,) = blocks_of(document, "table", "sensors")
     assert table.rows[0][:4] == ("gain of a marker", "block-2-face", "gain", "3 % (0.10 %)")
@@ -290,9 +299,9 @@ def test_missing_results_are_named_and_nothing_is_written(tmp_path, name):
     assert not (tmp_path / "a.html").exists()
 
 
-def test_odds_are_a_row_a_cause_the_likeliest_first(documents):
+def test_odds_are_a_row_a_cause_the_most_probable_first(documents):
     (table,) = blocks_of(documents["named"], "table", "odds")
-    assert table.rows[0][2] == "the likeliest"
+    assert table.rows[0][2] == "the most probable"
     assert "nothing" in [row[0] for row in table.rows]
     assert {row[1] for row in table.rows} <= {"", "effect", "form from outside"}
 

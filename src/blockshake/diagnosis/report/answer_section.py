@@ -2,13 +2,16 @@
 
 import numpy as np
 
-from blockshake.diagnosis.report.statement import changed, not_told, statement, until_then
+from blockshake.diagnosis.report.statement import changed, not_told, sensor_faults, statement, until_then
 from blockshake.diagnosis.wording import NO_ERROR, chance_words, estimate_words, name_of, percent_words
+from blockshake.effects.registry import title_of
 from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import BLACK, BLUE, LIGHT_GREY, new_figure, svg_of
 from blockshake.pages.units import printed
 from blockshake.pages.wording import listed, sentence_case
+from blockshake.pages.words import Words
 
+_ANSWER = Words(__name__)
 _OF_SLAB = {"rotation of the slab": "turn", "vertical motion of the slab": "lift"}
 _ABOUT = 0.5  # s, of a blow, that are drawn before and after it
 _MOST_TESTS, _MOST_BODIES = 5, 2
@@ -26,84 +29,67 @@ _MANY = 200  # points, from which on they are small
 
 
 def answer_section(diagnosed):
-    """The answer in two sentences, what holds it back, and the forces measured and explained."""
-    sentences = [*not_told(diagnosed), *changed(diagnosed)]
+    """The answer in two sentences, its numbers, what to do next and until then; the forces measured and explained."""
+    verdict, sentences = diagnosed.verdict, [*not_told(diagnosed), *changed(diagnosed)]
     blocks = [Box(statement(diagnosed), _facts(diagnosed)), *map(Text, sentences)]
     if diagnosed.synthetic:
-        blocks.append(
-            Text(
-                "The tests are SYNTHETIC: virtual tests, computed and seen through made-up sensors. Nothing was "
-                "measured; 'measured' below means read off the virtual test.",
-                strong=True,
-            )
-        )
-    items = _items(diagnosed)
-    now = Text(until_then(diagnosed))
-    further = [*([Items(items)] if items else []), *next_tests_table(diagnosed.verdict), now]
-    return Section("Answer", "answer", (*blocks, *further, *_figures(diagnosed)))
+        blocks.append(Text(_ANSWER.synthetic(), strong=True))
+    items = [_ANSWER.missing(verdict.missing)] if verdict.missing else []
+    if verdict.next_test and not verdict.next_tests:
+        items.append(_ANSWER.decides(verdict.next_test))
+    blocks += [Items(tuple(items))] if items else []
+    blocks += [*next_tests_table(verdict), Text(until_then(diagnosed)), *_figures(diagnosed)]
+    return Section("Answer", "answer", tuple(blocks))
 
 
 def _facts(diagnosed):
     """The three numbers of the box: chance without a cause, size, gain, each with its label and a note."""
     chance = chance_words(diagnosed.verdict.misfit.p)
     seen = "Chance of such readings without a cause", chance, "upper bound, over all that was tried"
-    return seen, _size_fact(diagnosed.decision), _gain_fact(diagnosed.verdict)
+    return seen, _size_fact(diagnosed), _gain_fact(diagnosed)
 
 
-def _size_fact(decision):
-    for first in (part.causes[0] for part in decision.parts):
-        for name, estimate in first.parameters.items():
-            return f"{name} of {first.title}", estimate_words(name, estimate), "90 % interval"
-    count = str(len(decision.excluded_above))
+def _size_fact(diagnosed):
+    """Size of the most probable cause, or of a sensor's fault; without any how many effects have a limit everywhere."""
+    decision, known = diagnosed.decision, diagnosed.verdict.parameters
+    causes = [(one.title, one.parameters) for one in (part.causes[0] for part in decision.parts)]
+    causes += [(title_of(name), known.get(name, {})) for name in sensor_faults(diagnosed)]
+    for title, parameters in causes:
+        for name, estimate in parameters.items():
+            return f"{sentence_case(name)[:-1]}: {title}", estimate_words(name, estimate), "90 % interval"
+    count = f"{len(decision.excluded_above)} of {len(decision.probabilities)}"
     return "Effects excluded from some size on", count, "wherever they act; sizes in the table of limits"
 
 
-def _gain_fact(verdict):
-    """Gain on the responses, or where these were not measured on forces; a gain that may be nothing is none."""
-    label, gain = "Error on sealed tests that the cause removes", verdict.gain or verdict.row_gain
+def _gain_fact(diagnosed):
+    """Gain on the responses, or on a sensor's readings; one on forces alone is no prediction, and no headline."""
+    label, verdict = "Error on sealed tests that the cause removes", diagnosed.verdict
+    gain, forces = verdict.gain, verdict.row_gain and percent_words(verdict.row_gain.recalibrated)
+    if gain is None and forces:
+        return label, "not predicted", _ANSWER.gain("forces", "", "", forces, diagnosed.effort == "quick")
     if gain is None:
         reasons = [one for one in verdict.caveats if "gain was measured" in one]
         return label, "not measured", (reasons or ["nothing acts that could explain any"])[0]
-    of = "responses" if verdict.gain else "forces alone"
     removed, of_nominal = map(percent_words, (gain.recalibrated, gain.nominal))
-    words = f"on {of}, of the recalibrated model's error; 90 % interval"
-    if removed == NO_ERROR:
-        words = f"the recalibrated model's error on {of} is within the noise; of the nominal model's: {of_nominal}"
-    elif gain.recalibrated.lower <= 0.0:
-        removed, words = "none shown", f"{words}: {removed}"
-    if verdict.gain and verdict.row_gain:
-        words += f"; on forces {percent_words(verdict.row_gain.recalibrated)}"
-    return label, removed, words
-
-
-def _items(diagnosed):
-    verdict, items = diagnosed.verdict, []
-    if verdict.missing:
-        items.append(f"Not called established because {'; '.join(verdict.missing)}.")
-    if verdict.next_test and not verdict.next_tests:
-        items.append(f"Measurement that would decide: {verdict.next_test}.")
-    return tuple(items)
+    of = "responses" if diagnosed.decision.parts else "sensors"
+    within, nothing = removed == NO_ERROR, gain.recalibrated.lower <= 0.0
+    note = _ANSWER.gain(
+        of, of_nominal if within else "", removed if nothing and not within else "", forces, False
+    )
+    return label, "none shown" if nothing and not within else removed, note
 
 
 def next_tests_table(verdict):
     """Table of the measurements that would split the sets; an empty list without any."""
     rows = [
         (
-            sentence_case(one.test)[:-1],
-            listed([name_of(name) for name in one.between], "or"),
+            sentence_case(one.test)[:-1], listed([name_of(name) for name in one.between], "or"),
             f"{100.0 * one.share:.0f} %",
         )
         for one in verdict.next_tests
-    ]
-    words = (
-        "Measurements that would split what the tests do not tell apart, and the share of such cases in which they "
-        "are expected to leave the true cause alone: from the odds, the sizes and the forces of these tests."
-    )
-    return (
-        [Table(words, ("Measurement", "Between", "Splits"), tuple(rows), "llr", (0.4, 0.45, 0.15))]
-        if rows
-        else []
-    )
+    ]  # fmt: skip
+    head = ("Measurement", "Between", "Separates")
+    return [Table(_ANSWER.next_tests(), head, tuple(rows), "llr", (0.4, 0.45, 0.15))] if rows else []
 
 
 def _figures(diagnosed):
@@ -122,9 +108,7 @@ def _forces(diagnosed, causes):
     shown, when = diagnosed.departures, [one.when for one in causes]
     bodies = shown_bodies(shown, [one.place.get("body") for one in causes])
     if not bodies:
-        return Text(
-            "No joint turned, slipped or lifted in any test, so that no force can be read off the motion."
-        )
+        return Text(_ANSWER.still())
     blows = {test: one["time"] for own in when for test, one in own.get("blows", {}).items()}
     if blows:
         at = np.array([blows.get(test, np.inf) for test in shown["test"].values.tolist()])
@@ -132,24 +116,13 @@ def _forces(diagnosed, causes):
     tests = shown_tests(shown)
     left_out = [name for name in diagnosed.decision.tests if name not in tests]
     titles = " and ".join(one.title for one in causes if shown["explained"].any())
-    words = (
-        "Forces that undamaged blocks do not make, where a joint turns, slips or lifts: the horizontal force that "
-        f"would have to act at the middle of {' or of '.join(bodies)}, if all of it acted there. Black: "
-        f"{diagnosed.measured_word}. {f'Blue: {titles} at the most probable size. ' if titles else ''}Without a cause "
-        "there is none: the line at 0. Grey: two standard deviations of the sensors' noise."
-        + (f" Drawn is what lies within {_ABOUT:g} s of a blow." if blows else "")
-        + (f" Not drawn: {', '.join(left_out)}." if left_out else "")
-    )
+    words = _ANSWER.forces(bodies, diagnosed.measured_word, titles, _ABOUT if blows else 0, left_out)
     return Figure(words, svg_of(plot_forces, shown, tests, bodies, titles, diagnosed.measured_word))
 
 
 def _slab(diagnosed, part):
     name, title = _OF_SLAB[part.readings], part.causes[0].title
-    share = ", as far as it follows the horizontal motion" if name == "lift" else ""
-    words = (
-        f"{sentence_case(part.readings)[:-1]}, from rest. Black: {diagnosed.measured_word}. Blue: {title} at the "
-        f"most probable size{share}. An undamaged table makes none: the line at 0."
-    )
+    words = _ANSWER.slab(part.readings, diagnosed.measured_word, title, name == "lift")
     return Figure(words, svg_of(plot_slab, diagnosed.departures, name, title, diagnosed.measured_word))
 
 

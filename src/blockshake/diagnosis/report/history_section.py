@@ -6,6 +6,9 @@ from blockshake.diagnosis.wording import history_words, shown_unit
 from blockshake.pages.blocks import Figure, Items, Section, Text
 from blockshake.pages.drawing import BLUE, GREY, new_figure, svg_of
 from blockshake.pages.wording import sentence_case
+from blockshake.pages.words import Words
+
+_BETWEEN_TESTS = Words(__name__)
 
 
 def history_section(diagnosed):
@@ -14,17 +17,9 @@ def history_section(diagnosed):
     if not paths:
         return None
     blocks = (
-        Text(
-            "A campaign is a history: edges wear, friction polishes. Each size below is that of one test alone, with "
-            "its interval of 90 %. Where a walk from test to test is likelier than one size for all by more than "
-            "chance, the size of what acts, and the extended model, are of the last test."
-        ),
+        Text(_BETWEEN_TESTS.method()),
         Items(tuple(sentence_case(history_words(path)) for path in paths)),
-        Figure(
-            "Sizes by test with their intervals of 90 %, in the order of the campaign. Blue: they change from test to "
-            "test; grey: one size is enough. Sizes of edges and friction are counted from those of sound blocks.",
-            svg_of(plot_histories, paths),
-        ),
+        Figure(_BETWEEN_TESTS.figure(), svg_of(plot_histories, paths)),
     )
     return Section("From test to test", "history", blocks)
 

@@ -3,10 +3,13 @@
 from blockshake.diagnosis.answer.places import EVERYWHERE
 from blockshake.diagnosis.gain.section import OF_GAIN
 from blockshake.diagnosis.report.size_section import meaning_words
-from blockshake.diagnosis.wording import beyond, listed, named_place
+from blockshake.diagnosis.wording import beyond, named_place
 from blockshake.effects.registry import EFFECTS, title_of
 from blockshake.pages.blocks import Items, Section, Table, Text
 from blockshake.pages.wording import sentence_case
+from blockshake.pages.words import Words
+
+_SEEN = Words(__name__)
 
 
 def limits_section(diagnosed):
@@ -17,17 +20,11 @@ def limits_section(diagnosed):
         one for one in dict.fromkeys(diagnosed.verdict.caveats)
         if one not in decision.cannot_see and not any(words in one for words in elsewhere)
     ]  # fmt: skip
-    blocks = [
-        Text(
-            "A cause that is as large as its limit would have been seen in nine of ten campaigns of the same motion. "
-            "The limits follow from the forces and the noise of these tests, before any cause is looked for."
-        ),
-        _table(diagnosed),
-    ]
+    blocks = [Text(_SEEN.method()), _table(diagnosed)]
     if decision.cannot_see:
-        blocks += [Text("The sensors do not show:"), Items(tuple(map(sentence_case, decision.cannot_see)))]
+        blocks += [Text(_SEEN.hidden()), Items(tuple(map(sentence_case, decision.cannot_see)))]
     if caveats:
-        blocks += [Text("Caveats:"), Items(tuple(map(sentence_case, caveats)))]
+        blocks += [Text(_SEEN.caveats()), Items(tuple(map(sentence_case, caveats)))]
     return Section("Limits: what would have been seen", "limits", tuple(blocks))
 
 
@@ -46,15 +43,8 @@ def _table(diagnosed):
             beyond(name, wherever) if wherever is not None else "not everywhere",
         ))  # fmt: skip
     removed = [title_of(name) for name in EFFECTS if name not in diagnosed.decision.probabilities]
-    return Table(
-        "Sizes from which each effect would have been seen: where these tests tell most of it and where they tell "
-        "least; and wherever it may be, unless there are places at which they tell nothing of it."
-        + (f" Left out on purpose: {listed(removed)}." if removed else ""),
-        ("Effect", "Size", "At the best place", "At the worst place", "Wherever it is"),
-        tuple(rows),
-        "lllll",
-        (0.2, 0.25, 0.2, 0.2, 0.15),
-    )
+    head = ("Effect", "Size", "At the best place", "At the worst place", "Wherever it is")
+    return Table(_SEEN.table(removed), head, tuple(rows), "lllll", (0.2, 0.25, 0.2, 0.2, 0.15))
 
 
 def _seen(diagnosed, name, limits, place):

@@ -4,6 +4,9 @@ from blockshake.dynamics.load_motion import provenance
 from blockshake.pages.blocks import Items, Section, Table
 from blockshake.pages.origin import command_blocks, digests_table, versions_table
 from blockshake.pages.wording import given
+from blockshake.pages.words import Words
+
+_TESTED = Words(__name__)
 
 
 def origin_section(diagnosed):
@@ -24,22 +27,7 @@ def _assumed(diagnosed):
         + (f": {provenance(one)}" if one["source"] != name or one["format"] != "csv" else "")
         for name, one in diagnosed.motions.items()
     ]
-    items = [
-        "Assumed: rigid blocks of the stated sizes and masses, of which edges, faces, mass centres and friction "
-        "scatter as sound blocks do; markers and accelerometers with the stated noise.",
-        "Forces are read off the measured motion; the decision rests on no simulation.",
-    ]
-    if diagnosed.verdict.runs:
-        items.append(
-            f"{diagnosed.verdict.runs} simulated tests, for the gain on the responses and the misfit alone."
-        )
-    if motions:
-        items.append(f"Commanded motions: {'; '.join(motions)}.")
-    items += [
-        f"{test} is judged until {one.body} falls, at {one.time:.2f} s."
-        for test, one in diagnosed.parity.falls.items()
-    ]
-    return tuple(items)
+    return _TESTED.items("assumed", diagnosed.verdict.runs, motions, diagnosed.parity.falls)
 
 
 def _tests_table(diagnosed):
@@ -52,8 +40,5 @@ def _tests_table(diagnosed):
             read = diagnosed.verdict.gain or diagnosed.verdict.row_gain
             use = "sealed: read for the gain alone" if read else "sealed: not read"
         rows.append((test.name, test.motion, given(test.scale), test.role, use))
-    words = (
-        f"Tests of the campaign {diagnosed.campaign.name}. Role, as the campaign says: fit and select are open, to "
-        "find the cause by; sealed is kept for the gain."
-    )
+    words = _TESTED.tests(diagnosed.campaign.name)
     return Table(words, ("Test", "Motion", "Scale", "Role", "Use"), tuple(rows), "llrll")

@@ -6,9 +6,19 @@ from blockshake.diagnosis.wording import chance_words, size_words
 from blockshake.effects.registry import title_of
 from blockshake.measurement.sensors.found_noise import noise_words
 from blockshake.pages.blocks import Section, Table, Text
-from blockshake.pages.wording import number
+from blockshake.pages.words import Words
 from blockshake.parity.kinds.registry import KINDS
 from blockshake.parity.parity import LEVEL
+
+_CHECKED = Words(__name__)
+_GAINS = (
+    ("channels", "Accelerometer channels", "the markers do not show what they read or it is small"),
+    (
+        "transducers",
+        "Displacement transducers",
+        "the markers do not see their ends or these hardly moved apart",
+    ),
+)
 
 
 def sensors_section(diagnosed):
@@ -17,39 +27,21 @@ def sensors_section(diagnosed):
 
 
 def _sensors(parity):
-    noise = parity.markers["noise"]
-    unchecked = noise["marker"].values[np.isnan(noise)].tolist()
-    text = (
-        f"The sensors were checked against each other, without any simulation: {parity.looked_at} hypotheses on "
-        f"{parity.markers.sizes['marker']} markers, {parity.channels.sizes['channel']} accelerometer channels, "
-        f"the clocks of {parity.clock.sizes['test']} tests; chance of any false finding {LEVEL:g}. "
+    noise, lags = parity.markers["noise"], np.abs(parity.clock["lag"])
+    gains = []
+    for one, sensors, why in _GAINS:
+        found = getattr(parity, one)["gain"]
+        names = found[found.dims[0]].values
+        gains.append((sensors, why, names[found.notnull()].tolist(), names[found.isnull()].tolist()))
+    return _CHECKED.checks(
+        parity=parity,
+        noise=noise_words(parity.sensors),
+        level=LEVEL,
+        unchecked=noise["marker"].values[np.isnan(noise)].tolist(),
+        lag=float(lags.max()) if lags.size else None,
+        gains=gains,
+        found=bool(parity.findings),
     )
-    text += f"At rest the {noise_words(parity.sensors)}. "
-    if unchecked:
-        text += f"Not checked against others, fewer than three on their body: {', '.join(unchecked)}. "
-    lags = np.abs(parity.clock["lag"])
-    if lags.size:
-        text += f"Largest lag between markers and accelerometers {number(1e3 * lags.max(), 2)} ms. "
-    for gains, sensors, why in (
-        (
-            parity.channels["gain"],
-            "Accelerometer channels",
-            "the markers do not show what they read or it is small",
-        ),
-        (
-            parity.transducers["gain"],
-            "Displacement transducers",
-            "the markers do not see their ends or these hardly moved apart",
-        ),
-    ):
-        known, others = (
-            gains[gains.dims[0]].values[one].tolist() for one in (gains.notnull(), gains.isnull())
-        )
-        if known:
-            text += f"{sensors} whose gain the markers of their bodies tell: {', '.join(known)}. "
-        if others:
-            text += f"{sensors} whose gain nothing tells, as {why}: {', '.join(others)}. "
-    return text if parity.findings else f"{text}No fault was found."
 
 
 def _estimate(finding, channels):
@@ -71,15 +63,5 @@ def _findings(diagnosed):
         )
         for one in diagnosed.parity.findings
     ]  # fmt: skip
-    if not rows:
-        return []
-    return [
-        Table(
-            "Faults of sensors, taken out of the readings before any cause was looked for; the standard error of "
-            "each estimate stands in brackets. The place of a marker or of an end of a displacement transducer is "
-            "in the frame of its body.",
-            ("Fault", "Where", "Quantity", "Estimate", "p", "Tests"),
-            tuple(rows),
-            "lllrrl",
-        )
-    ]
+    head = ("Fault", "Where", "Quantity", "Estimate", "p", "Tests")
+    return [Table(_CHECKED.table(), head, tuple(rows), "lllrrl")] if rows else []

@@ -3,7 +3,9 @@
 from blockshake.diagnosis.wording import estimate_words, place_words, range_words, size_words, when_words
 from blockshake.effects.registry import EFFECTS
 from blockshake.pages.blocks import Items, Section, Table
+from blockshake.pages.words import Words
 
+_SIZES = Words(__name__)
 _WHERE = {
     "input": "on the table's motion",
     "contact": "in the contacts",
@@ -22,15 +24,11 @@ def size_section(diagnosed):
 
 
 def _described(cause):
-    title, place = cause.title[0].upper() + cause.title[1:], place_words(cause.place)
+    place = place_words(cause.place)
     if cause.outside:
-        acts = ", ".join(words for words in (place, when_words(cause.when)) if words)
-        return f"{title}: at {acts}. A form that the forces have, and no effect of the registry."
+        return _SIZES.outside(cause.title, [words for words in (place, when_words(cause.when)) if words])
     effect = EFFECTS[cause.name]
-    return (
-        f"{title}: acts {_WHERE[effect.acts]}{f', at {place}' if place else ''}. Equation: {effect.equation} "
-        f"({effect.source}). Told apart from what looks alike by: {effect.told_apart_by}."
-    )
+    return _SIZES.effect(cause.title, _WHERE[effect.acts], place, effect)
 
 
 def _table(causes):
@@ -44,13 +42,7 @@ def _table(causes):
                 range_words(one.lower, one.upper, one.unit) if one else "",
                 "" if number else size_words(one.null if one else 0.0, estimate.unit),
             ))  # fmt: skip
-    return Table(
-        "Sizes with their intervals of 90 %, from all instants of all tests; the range of the registry, and the "
-        "value in a model without the cause.",
-        ("Cause", "Parameter", "Size", "Range", "Without"),
-        tuple(rows),
-        "lllrr",
-    )
+    return Table(_SIZES.table(), ("Cause", "Parameter", "Size", "Range", "Without"), tuple(rows), "lllrr")
 
 
 def meaning_words(parameter):

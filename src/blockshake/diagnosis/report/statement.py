@@ -34,7 +34,6 @@ def statement(diagnosed):
         kind=_KINDS.get(verdict.word, "named"),
         acting=acting,
         sensors=sensor_causes(diagnosed),
-        rows=decision.n_rows,
         tests=len(decision.moved or decision.tests),
     )
 
@@ -57,6 +56,7 @@ def until_then(diagnosed):
     worst = max(factors, key=factors.get, default=None)
     return _STATED.until_then(
         nothing=verdict.word == NOTHING,
+        sensors=not diagnosed.decision.parts and bool(sensor_faults(diagnosed)),
         factor=factors.get(worst),
         test=worst,
         limits=sum(name not in verdict.causes for name in verdict.excluded_above),
@@ -75,20 +75,25 @@ def _places(diagnosed, cause):
     return listed(words, "or")
 
 
-def sensor_causes(diagnosed):
-    """Faults of sensors among the causes of the verdict, in words with their sizes."""
+def sensor_faults(diagnosed):
+    """Sensors of each fault among the causes of the verdict, by its name."""
     physical = [one.name for one in diagnosed.decision.causes]
     where = {name: [] for name in diagnosed.verdict.causes if name not in physical}
     for one in diagnosed.parity.findings:
         if one.effect in where:
             where[one.effect] += one.where
+    return where
+
+
+def sensor_causes(diagnosed):
+    """Faults of sensors among the causes of the verdict, in words with their sizes."""
     known = diagnosed.verdict.parameters
     return [
         ", ".join([
             f"{title_of(name)} ({', '.join(dict.fromkeys(own))})",
             *(f"{key} {estimate_words(key, one)}" for key, one in known.get(name, {}).items()),
         ])
-        for name, own in where.items()
+        for name, own in sensor_faults(diagnosed).items()
     ]  # fmt: skip
 
 

@@ -4,10 +4,13 @@ import yaml
 
 from blockshake.pages.blocks import Items, Listing, Section
 from blockshake.pages.origin import command_blocks, digests_table, pairs_table, versions_table
-from blockshake.pages.wording import model_label, parameter_label
+from blockshake.pages.wording import model_label
+from blockshake.pages.words import Words
 from blockshake.simulation.models import solver_of
 from blockshake.study.ensembles.case_input import COMMANDED
 from blockshake.study.report.open_questions import MOST, unknown
+
+_CLOSING = Words(__name__)
 
 
 def origin(content):
@@ -39,28 +42,15 @@ def origin(content):
 
 def limits(content):
     """Limits of the study."""
-    cases = content.cases.values()
-    random = [parameter_label(name) for name in content.distributions]
-    measured, commanded = (
-        ", ".join(case.name for case in cases if (case.settings["input"] == COMMANDED) == is_commanded)
-        for is_commanded in (False, True)
+    driven = {True: [], False: []}
+    for name, case in content.cases.items():
+        driven[case.settings["input"] == COMMANDED].append(name)
+    items = _CLOSING.items(
+        "limits",
+        random=list(content.distributions),
+        measured=driven[False],
+        rigid=[model for model in content.study["models"] if solver_of(model).rigid],
+        commanded=driven[True],
+        unknown=unknown(content)[MOST:],
     )
-    if measured:
-        random.append(f"the motion of the slab within the error of its readings ({measured})")
-    rigid = [model_label(model) for model in content.study["models"] if solver_of(model).rigid]
-    items = [
-        "Friction is Coulomb's, with one coefficient a pair of materials, constant in time, place and rate.",
-        f"Random are: {'; '.join(random)}. Sizes, places and the condition of the joints are taken as known.",
-        "Structures have no imperfections; responses are shown along x only.",
-        *unknown(content)[MOST:],
-    ]
-    if rigid:
-        items.append(
-            f"Blocks are rigid in {' and '.join(rigid)}: no deformation inside a block, no cracking, no crushing of "
-            "edges."
-        )
-    if commanded:
-        items.append(
-            f"The models of {commanded} are driven by the commanded motion, not by that of the slab."
-        )
-    return Section("Limits of this study", "limits", (Items(tuple(items)),))
+    return Section("Limits of this study", "limits", (Items(items),))
