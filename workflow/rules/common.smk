@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 
 # scripts find the package around the workflow, a checkout's or an installed one, in any environment
-ABOVE = Path(workflow.basedir, "src")
-ABOVE = ABOVE if ABOVE.is_dir() else Path(workflow.basedir).parents[1]
+ROOT = Path(workflow.basedir.removesuffix("workflow"))
+ABOVE = ROOT / "src" if (ROOT / "src").is_dir() else ROOT.parents[1]
 sys.path.insert(0, str(ABOVE))
 # one thread a job, BLAS included
 os.environ.update(

@@ -126,7 +126,8 @@ def check_names(config, where):
         raise InputError(where, "name", f"expected another name: results/{config.name} is all studies' own")
     rules = [
         rule
-        for path in (HOME / "Snakefile", *HOME.glob("workflow/rules/*.smk"))
+        for path in HOME.glob("workflow/**/*")
+        if path.suffix == ".smk" or path.name == "Snakefile"
         for rule in _RULE.findall(path.read_text(encoding="utf-8"))
     ]
     names, by_name = [case.name for case in config.cases], {}
