@@ -32,9 +32,6 @@ def _of_edges(decision):
     return next(one for one in decision.histories if one.parameter == "inset")
 
 
-@pytest.mark.xfail(
-    strict=True, reason="edges that wear from test to test are answered as an edge that crushes"
-)
 def test_edges_that_wear_from_test_to_test_are_a_path(worn):
     path = _of_edges(worn)
     assert path.changes
@@ -45,9 +42,6 @@ def test_edges_that_wear_from_test_to_test_are_a_path(worn):
     assert middles == sorted(middles)
 
 
-@pytest.mark.xfail(
-    strict=True, reason="edges that wear from test to test are answered as an edge that crushes"
-)
 def test_the_model_is_extended_by_the_size_of_the_last_test(worn):
     cause = worn.parts[0].causes[0]
     last = _of_edges(worn).sizes[-1]

@@ -40,7 +40,7 @@ def histories(evidence, beside, first, seen):
     if evidence is None:
         return ()
     more = needed_beside(False, [first]) if first and (first.cause, first.place) in evidence.keys else 0.0
-    own = _own(evidence, first, seen, more) if more else None
+    own = _own(evidence, first, seen) if more else None
     of_edges = own is not None and first.cause in _OF_EDGES
     others = (quantity for quantity in _SOUND if not (of_edges and quantity == EDGES))
     sound = [_of_sound_joints(beside or evidence, quantity, more) for quantity in others]
@@ -70,7 +70,7 @@ def of_last_test(cause, history):
     )
 
 
-def _own(evidence, first, seen, more):
+def _own(evidence, first, seen):
     """`History` of a cause at its best place; None where it has no amplitude or does not act in all tests."""
     fit, place = evidence.best((first.cause, first.place)).best, place_of(first.cause, first.place, seen)
     size, form = fit.size[0], FORMS.get(first.cause)
@@ -82,7 +82,7 @@ def _own(evidence, first, seen, more):
         columns = [rows @ fit.mean / size for rows in fit.columns]
     name, unit = next(iter(units_of(first.cause).items()))
     found = _weighed(evidence, columns, float(fit.scales[0]))
-    needed = by_odds(first.cause) + more
+    needed = by_odds(first.cause)  # errors of its form are in the scatter of the sizes
 
     def read(amplitudes):
         return read_sizes(first.cause, fit.values, amplitudes, 0.0)[name]
