@@ -34,6 +34,7 @@ class Likelihood:
 
     @cached_property
     def _inner(self):
+        # Woodbury: (C + N N')^-1 = C^-1 - C^-1 N (1 + N' C^-1 N)^-1 N' C^-1, all in whitened rows
         size = self.nuisances.shape[1]
         return np.linalg.inv(np.eye(size) + self.nuisances.T @ self.nuisances)
 
@@ -49,6 +50,7 @@ class Likelihood:
     @cached_property
     def log_evidence(self):
         """Logarithm of the evidence of the rows themselves without any cause, with the prior of this likelihood."""
+        # ln |C| of the whitening, which evidences beside one likelihood share and those of two do not
         spread = sum(np.log(np.diag(root)).sum() for root in self.roots)
         return self.log_evidence_of_rows - spread + self.prior
 
@@ -133,6 +135,7 @@ class Likelihood:
             By test: covariance of what the form of the cause leaves.
         """
         cut = [slice(a, b) for a, b in pairwise(self.ends)]
+        # the form's error changes C itself: rows and nuisances go back to forces and are whitened anew
         roots = [
             np.linalg.cholesky(root @ root.T + rows) for root, rows in zip(self.roots, errors, strict=True)
         ]

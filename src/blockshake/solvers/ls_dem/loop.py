@@ -123,6 +123,7 @@ def _advance(assembly, times, pause, progress, candidates, record, searched, gro
         if step == 0:
             copy_into(now, progress.ground)
             keep_poses(poses)
+        # the lists hold until two bodies together may have moved by the skin: then Python makes them anew
         if not searched and (
             step == 0
             or lists_expired(candidates, surfaces, bodies.driven, state.position, state.orientation, skin)
@@ -138,6 +139,7 @@ def _advance(assembly, times, pause, progress, candidates, record, searched, gro
         external_loads_into(bodies, forces, state, t, external, loads)
         _account_into(bodies, loads, now, progress)
 
+        # momenta go from t - dt/2 to t + dt/2; at t itself they are the state that is recorded
         _kick(bodies, loads, dt, step > 0, progress)
         loads.energy[STEP_EXTERNAL_WORK] = dt * external_power(forces, external, state)
         # the first kick is half a step's

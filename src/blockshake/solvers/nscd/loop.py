@@ -80,6 +80,7 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
             return PAUSED, -1, contacts, joints, record
         iterations, residual, part, parts = 0, 0.0, 0, 1
         while part < parts:
+            # predict: poses at t + (1 - theta) dt, where contacts are detected (Moreau 1999; Jean 1999)
             h, number = dt / parts, clock[STEP] * parts + part
             move_ground_by_secant_into(ground, (number + 1.0 - theta) * h, (number + 2.0 - theta) * h, h)
             external_impulses_into(bodies, forces, state, (number + 0.5) * h, h, step.external)
@@ -88,6 +89,7 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
             renewed = _detect(
                 bodies, stoppers, layers, polyhedra, settings, watch.base, step, placed, progress.face, h
             )
+            # laws of the contacts, first guesses from the step before, and the solution of all together
             n_contacts = renewed.gap.size - number_of(stoppers)
             friction_into(friction, joints, step.rotations, renewed)
             law_shift_into(step, h, theta, settings.restitution, renewed)
@@ -98,10 +100,12 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
             )  # fmt: skip
             iterations += tried
             if parts < settings.impact_parts and bodies_meet(renewed, n_contacts, step.v_start, gravity * dt):
+                # an impact: nothing has moved yet, so the step begins again in smaller parts
                 parts = settings.impact_parts
                 continue
             contacts, residual = renewed, max(residual, error)
 
+            # move, then the balance of energy, with the mean velocities that did the work
             move_ground_into(ground, (number + 1) * h)
             move_into(bodies, ground, h, theta, contacts, step, state)
             copy_into(energy, energy_before)

@@ -68,6 +68,7 @@ def _first_order(standard, target, stream):
     n_samples, n_variables = standard.shape
     raw = np.random.PCG64(stream).random_raw(n_samples * n_variables).reshape(n_samples, n_variables)
     shuffled = np.take_along_axis(np.sort(standard, axis=0), np.argsort(raw, axis=0, kind="stable"), axis=0)
+    # Iman and Conover (1982): ranks of scores that correlate as the target does
     wanted = shuffled @ np.linalg.cholesky(target).T
     ranks = np.argsort(np.argsort(wanted, axis=0, kind="stable"), axis=0, kind="stable")
     return np.take_along_axis(np.argsort(standard, axis=0, kind="stable"), ranks, axis=0)
@@ -134,6 +135,7 @@ def anneal_level(target, column, first, second, chance, temperature, least, scor
     improved = squares < least_squares
     if improved:
         least_squares = squares
+    # swaps since the best order: undone at the end instead of a copy at every improvement
     trail = np.empty(column.size, dtype=np.int64)
     n_trail = 0
 

@@ -88,6 +88,7 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
         if bounds[2 * pair] == bounds[2 * pair + 2]:
             continue
         a, b, joint = pairs[pair, 0], pairs[pair, 1], candidates.joint[pair]
+        # a pair so far apart that no node of it can touch yet costs nothing but this
         if sleeps(candidates, poses.position, pair):
             _slip_into(loads.joints, joint, 0.0, 0.0, dt)
             continue
@@ -95,6 +96,7 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
         k_n, k_s = normal_stiffness(interfaces, a, b), in_series(interfaces.k_s, a, b)
         gamma_n = dashpot_coefficient(interfaces, a, b, interfaces.damping_ratio, k_n, area)
         gamma_s = dashpot_coefficient(interfaces, a, b, interfaces.shear_damping_ratio, k_s, area)
+        # friction by the joint's slip of the step before: explicit, so that no node waits for another
         slip_rate, slip = loads.joints.slip_rate[joint], loads.joints.slip[joint]
         mu = friction_coefficient(interfaces.friction, a, b, slip_rate, slip)
         bias = mu * friction_asymmetry(interfaces.friction, a, b)
@@ -106,6 +108,7 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
                 if side == 1
                 else (-bias * R[0, 0, 0], -bias * R[0, 1, 0], -bias * R[0, 2, 0])
             )
+            # each side carries half of the stiffness: a face on a face has the whole
             law = Law(0.5 * k_n, 0.5 * k_s, gamma_n, mu, bx, by, bz, interfaces.least_force, rate)
             side_forces_into(
                 packets, located, bounds[2 * pair + side], bounds[2 * pair + side + 1], bounds[2 * pair], law,

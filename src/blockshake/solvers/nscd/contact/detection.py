@@ -52,6 +52,7 @@ def detect_pair_into(polyhedra, placed, a, b, margin, shrink, layer, memory, nor
     """
     size = min(polyhedra.radius[a], polyhedra.radius[b])
     bias = _BIAS * size
+    # candidates in two classes: face normals first, since most contacts of blocks are face to face
     face, separation = _best_face(polyhedra, placed, a, b, margin, memory[a, b], bias)
     if separation > margin:
         return 0
@@ -60,6 +61,7 @@ def detect_pair_into(polyhedra, placed, a, b, margin, shrink, layer, memory, nor
         (a, b) if face < polyhedra.first_face[a + 1] and face >= polyhedra.first_face[a] else (b, a)
     )
     count = _face_points_into(polyhedra, placed, other, face, margin, shrink, layer, points, gaps, areas)
+    # crosses of edges only where faces overlap nowhere, or press deeper than a touch: they are many
     if count == 0 or separation < -_TOUCH * size:
         edge_normal = placed.outline.axis
         edge_separation = _best_edge_into(polyhedra, placed, a, b, edge_normal)
@@ -97,6 +99,7 @@ def _best_face(polyhedra, placed, a, b, margin, last_face, bias):
     threshold = best + bias
     for owner, other in ((a, b), (b, a)):
         for face in range(polyhedra.first_face[owner], polyhedra.first_face[owner + 1]):
+            # the other's mass centre bounds its nearest vertex from above: no need to look at vertices
             if dot(placed.normals[face], placed.center[other]) - placed.offsets[face] <= threshold:
                 continue
             separation = _face_separation(polyhedra, placed, face, other)

@@ -57,6 +57,7 @@ def block_system(driven, body_a, body_b):
             degree[j] += 1
     rank, position = np.full(driven.size, -1, np.int64), np.full(n, -1, np.int64)
     first, column, count = np.zeros(n + 1, np.int64), np.empty(4 * n + 4, np.int64), 0
+    # symbolic elimination: the pattern of the factors is known before any number is
     for k in range(n):
         least = -1
         for i in range(n):
@@ -71,6 +72,7 @@ def block_system(driven, body_a, body_b):
                 column[count] = i
                 count += 1
         first[k + 1] = count
+        # eliminating a body couples all of its neighbours: the fill-in
         for entry in range(first[k], count):
             i = column[entry]
             degree[i] -= 1
@@ -80,6 +82,7 @@ def block_system(driven, body_a, body_b):
                     touch[i, j] = touch[j, i] = True
                     degree[i] += 1
                     degree[j] += 1
+    # columns by place in the elimination instead of by body, increasing in every row
     for k in range(n):
         for entry in range(first[k], first[k + 1]):
             # insertion: rows are short
@@ -184,6 +187,7 @@ def solve_blocks_into(system):
     """
     n = system.x.shape[0]
     for k in range(n):
+        # A = P^T L U within the block: the row exchanges of the 6 x 6 factors stay inside
         A, exchange = system.diagonal[k], system.exchange[k]
         first, last = system.first[k], system.first[k + 1]
         if not _factor_into(A, exchange):
@@ -197,6 +201,7 @@ def solve_blocks_into(system):
         for entry in range(first, last):
             _divide_right_into(A, exchange, system.right_of[entry])
             _divide_below_into(A, system.below[entry])
+        # Schur complement of block k: S_ij -= B_ki^T A^-1 C_kj for every pair of its neighbours i, j
         for entry in range(first, last):
             i = system.column[entry]
             right, below = system.right_of[entry], system.below[entry]
@@ -204,12 +209,14 @@ def solve_blocks_into(system):
             for row in range(_FREE):
                 for inner in range(_FREE):
                     system.x[i, row] -= below[inner, row] * y[inner]
+            # both rows increase, so that one pass finds where block (i, j) is kept
             at = system.first[i]
             for other in range(entry + 1, last):
                 while system.column[at] < system.column[other]:
                     at += 1
                 _subtract_into(below, system.right_of[other], system.right_of[at])
                 _subtract_into(right, system.below[other], system.below[at])
+    # back substitution, last body first
     for k in range(n - 1, -1, -1):
         A, y = system.diagonal[k], system.x[k]
         for entry in range(system.first[k], system.first[k + 1]):

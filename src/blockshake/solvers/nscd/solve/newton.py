@@ -75,12 +75,14 @@ def linear_law_into(contacts, contact, u, stiffness, D, c):
     share, compliance = contacts.share[contact], contacts.compliance[contact]
     u_n, u_1, u_2 = law_velocity(contacts, contact, u)
     rho = effective_mass(contacts.delassus[contact])
+    # Alart and Curnier: the contact is closed where the augmented impulse p_n - rho u_n is positive
     trial_n = p[0] - rho * u_n
     if trial_n <= 0.0:
         return
     stiff = stiffness * rho
     D[0, 0] = stiff * share / (1.0 + stiff * compliance)
     c[0] = (p[0] - stiff * share * shift[0]) / (1.0 + stiff * compliance)
+    # augmented tangential impulse: inside Coulomb's disk the contact sticks, outside it slips along it
     s_1, s_2 = p[1] - rho * u_1, p[2] - rho * u_2
     mu = coefficient_along(contacts, contact, s_1, s_2)
     if mu == 0.0:
@@ -91,6 +93,8 @@ def linear_law_into(contacts, contact, u, stiffness, D, c):
         D[1, 1] = D[2, 2] = stiff
         c[1], c[2] = p[1] - stiff * shift[1], p[2] - stiff * shift[2]
         return
+    # slipping: derivative of the projection onto the disk, of radius mu p_n; its change with p_n is the coupling of
+    # D[1, 0] and D[2, 0], which makes the system unsymmetric
     d_1, d_2 = s_1 / size, s_2 / size
     across = min(rho * limit / (size - limit), stiff)
     D[1, 0], D[2, 0] = mu * d_1 * D[0, 0], mu * d_2 * D[0, 0]
@@ -171,6 +175,7 @@ def _assemble_into(bodies, inertia, contacts, stiffness, v, newton):
         D, c, p = newton.slope[contact], newton.offset[contact], contacts.impulse[contact]
         u = relative_velocity(contacts, contact, v)
         linear_law_into(contacts, contact, u, stiffness, D, c)
+        # laws in the change of the velocity, so that the answer is small where the step has converged
         due = matrix_product(D, u)
         c[0], c[1], c[2] = c[0] - due[0], c[1] - due[1], c[2] - due[2]
         change = transposed_product(contacts.basis[contact], (c[0] - p[0], c[1] - p[1], c[2] - p[2]))
