@@ -3,8 +3,12 @@
 from dataclasses import replace
 
 import pytest
+from simulated_tests import DURATION, seen_tests
 
+from blockshake.diagnosis.answer.decide import decide
+from blockshake.diagnosis.answer.thresholds import by_odds, thresholds_of
 from blockshake.diagnosis.nominal.clean_runs import simulate_clean_runs
+from blockshake.diagnosis.nominal.nominal_model import MODELS
 from blockshake.diagnosis.nominal.planned_test import Clock, PlannedTest
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import PACKAGE, named_file
@@ -51,3 +55,32 @@ def test_a_second_call_takes_what_the_store_has(runs, monkeypatch):
     found, (planned, channels, solver, count, store) = runs
     monkeypatch.setattr("blockshake.diagnosis.nominal.clean_runs._gains", None)
     assert simulate_clean_runs(planned, channels, solver, count, store) == found
+
+
+@pytest.mark.slow
+def test_clean_runs_of_walls_with_loops_raise_the_threshold_of_a_changed_edge_and_nothing_is_called(tmp_path):
+    """Strong tests of two walls under a bridge, nodes farther apart than in any nominal model."""
+    motions = {"one": ("alkion", 2.75), "two": ("alkion", 3.5), "three": ("basso-tirreno", 2.75)}
+    model = "ls-dem", {"ls_dem.node_spacing": 0.16}, 1e-4
+    seen = seen_tests("configuration-3", motions, model=model)
+    structure = load_structure("configuration-3")
+    markers = tuple(marker.name for marker in structure.file.markers)
+    planned = {
+        name: PlannedTest(
+            structure,
+            load_motion(named_file("motions", motion), scale),
+            DURATION,
+            Sensors(),
+            markers,
+            (),
+            Clock(),
+        )
+        for name, (motion, scale) in motions.items()
+    }
+    channels = dict.fromkeys(planned, accelerometer_channels(structure))
+    store = Store(tmp_path, "source", lambda line: None)
+    runs = [run for solver in MODELS for run in simulate_clean_runs(planned, channels, solver, 1, store)]
+    thresholds = thresholds_of(runs)
+    decision = decide(seen, thresholds=thresholds).decision
+    assert thresholds.of("changed-edge") > by_odds("changed-edge")
+    assert decision.decision == "none", [(part.readings, part.gains) for part in decision.parts]

@@ -80,7 +80,7 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
             return PAUSED, -1, contacts, joints, record
         iterations, residual, part, parts = 0, 0.0, 0, 1
         while part < parts:
-            # predict: poses at t + (1 - theta) dt, where contacts are detected (Moreau 1999; Jean 1999)
+            # predict: poses at t + (1 - theta) dt, where contacts are detected (Moreau 1988; Jean 1999)
             h, number = dt / parts, clock[STEP] * parts + part
             move_ground_by_secant_into(ground, (number + 1.0 - theta) * h, (number + 2.0 - theta) * h, h)
             external_impulses_into(bodies, forces, state, (number + 0.5) * h, h, step.external)
