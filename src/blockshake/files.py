@@ -382,11 +382,12 @@ def write_dataset(path, dataset, decimals=None):
     value that no such number reaches, 215 m here, is not packed. The same content gives the same bytes, whether it was
     computed or read from a file.
     """
-    encoding = {}
     dataset = dataset.drop_encoding()
+    # coordinate variables have no missing values (CF-1.11, section 2.5.1)
+    encoding = {name: {"_FillValue": None} for name in dataset.dims if name in dataset.variables}
     for name, variable in dataset.variables.items():
         if variable.dtype.kind == "f" and variable.size > 64:
-            encoding[name] = {"zlib": True, "complevel": 2, "shuffle": True}
+            encoding[name] = encoding.get(name, {}) | {"zlib": True, "complevel": 2, "shuffle": True}
             unit = variable.attrs.get("units")
             if decimals is None or unit not in decimals:
                 continue

@@ -77,7 +77,7 @@ def test_the_energy_audit_closes(viscous, rocking, deform):
     assert energy_residual(run.energy) < 1e-4
     assert np.diff(run.energy[:, 3:6], axis=0).min() >= 0.0
     assert run.energy[:, 2].min() > 0.0
-    assert run.numerics["fraction_above_1e-4"] == 0.0
+    assert run.numerics["fraction_unconverged"] == 0.0
 
 
 def test_a_block_that_is_turned_slowly_is_not_strained(stone, tower, deform):

@@ -61,7 +61,7 @@ def simulate_nscd(structure, motion, parameters, record_times, time_step=1e-3, c
     Trajectory
         Between steps, positions, velocities and energies are linear and orientations follow the rotation of the step; a
         joint's force is the mean over the step in which the time falls. ``numerics``: ``steps``, ``mean_iterations``,
-        ``max_iterations``, ``max_residual``, ``fraction_above_1e-4`` (of the steps, by residual), ``capped_steps``
+        ``max_iterations``, ``max_residual``, ``fraction_unconverged`` (of the steps, by residual), ``capped_steps``
         (stopped short of the tolerance), ``parted_steps`` (in which bodies met, with ``impact_parts``),
         ``energy_residual`` (largest misfit of the energy terms, relative to the energy in play) and ``max_penetration``
         [m].
@@ -137,7 +137,7 @@ def _numerics(progress):
         "mean_iterations": int(clock[ITERATIONS]) / steps,
         "max_iterations": int(clock[MOST_ITERATIONS]),
         "max_residual": float(audit[WORST_RESIDUAL]),
-        "fraction_above_1e-4": int(clock[BAD_STEPS]) / steps,
+        "fraction_unconverged": int(clock[BAD_STEPS]) / steps,
         "capped_steps": int(clock[CAPPED_STEPS]),
         "parted_steps": int(clock[PARTED_STEPS]),
         "energy_residual": float(audit[MISFIT] / audit[IN_PLAY]) if audit[IN_PLAY] > 0.0 else 0.0,

@@ -45,7 +45,7 @@ def failures(content):
         for model, response in case.responses.items():
             samples = response.samples
             residual = np.fmax(residual, numerical_figure(samples, "energy_residual", np.max))
-            capped = np.fmax(capped, numerical_figure(samples, "numerics_fraction_above_1e-4", np.max))
+            capped = np.fmax(capped, numerical_figure(samples, "numerics_fraction_unconverged", np.max))
             rows += [
                 (
                     case.name, model_label(model), str(int(one["sample"])), str(one["status"].values),
