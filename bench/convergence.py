@@ -27,8 +27,6 @@ _COLUMNS = {
     "swing_time": ("Swing time [ms]", 1e3, ".2f"),
     "impact_ratio": ("Impact ratio [1]", 1.0, ".4f"),
     "peak_drift": ("Peak drift [mm]", 1e3, ".2f"),
-    "peak_rotation": ("Peak rotation [mrad]", 1e3, ".2f"),
-    "upright_time": ("Upright again [ms]", 1e3, ".1f"),
     "end_drift": ("End drift [mm]", 1e3, ".1f"),
     "energy_residual": ("Energy residual [1]", 1.0, ".1e"),
 }
