@@ -19,13 +19,13 @@ from hollow_faces import HEADER as HOLLOW_HEADER
 from hollow_faces import hollow_rows
 from measured import wrapped
 from recorded_lmgc90 import SPEED_HEADER, speed_rows
-from schedule import deep_diagnosis, hours, measured, planned, shares, timed_study
+from schedule import measured, shares
 from shear_damping import HEADER as SHEAR_HEADER
 from shear_damping import shear_damping_rows, shear_damping_words
 from the_paper import HEADER, count_words, judge_statements
 
 from blockshake.dynamics.load_motion import load_motion
-from blockshake.files import load_json, load_yaml, write_text
+from blockshake.files import load_json, write_text
 from blockshake.geometry.structure import load_structure
 from blockshake.pages.wording import given, number
 from blockshake.simulation.simulate import simulate
@@ -52,10 +52,7 @@ _CHANGES = {
 FAULTS = Path("results/faults.json")  # of `make test-faults`
 _STEPS = {"nscd-rigid": 1e-3, "ls-dem": 5e-5}  # s
 DEFAULT = DOCS.parent / "config" / "study.yaml"
-DIAGNOSED = DOCS.parent / "data" / "virtual-campaign" / "configuration-2"
-PROFILE = DOCS.parent / "profiles" / "slurm" / "profile.yaml"
 DONE = Path("reports/study.html")
-_CORES = (1, 64, 1024)
 _PRICES = (0, 1, 3, 4, 7, 8)  # case, model, peak and width of the table of other settings, with their changes
 _MOST_OF_A_FINDING = 110  # characters on the page
 _SHOWN = 8  # rules that take most of the time
@@ -189,28 +186,6 @@ def cost_of_samples():
     return markdown(("model", "step [s]", *cases), rows)
 
 
-def times_on_a_cluster():
-    """Hours of the studies and of a deep diagnosis by the number of cores; None where no study has been run."""
-    if not DONE.is_file():
-        return None
-    done, times = load_config(DEFAULT), measured(".", "study")
-    plans = {}
-    for words, path in (
-        ("the default study", DEFAULT),
-        ("the paper's study", DEFAULT.with_name("paper.yaml")),
-    ):
-        jobs = planned("--configfile", str(path), "--config", *load_yaml(PROFILE)["config"])
-        plans[words] = timed_study(jobs, load_config(path), done, times)
-    plans["a deep diagnosis"] = deep_diagnosis(DIAGNOSED, times)
-    rows = []
-    for words, jobs in plans.items():
-        longest = max(jobs, key=lambda job: job.seconds)
-        spans = [number(hours(jobs, cores), 2) for cores in _CORES]
-        rows.append((words, len(jobs), *spans, f"`{longest.rule}`, {number(longest.seconds / 3600.0, 2)} h"))
-    heads = [f"{cores:,} cores [h]" if cores > 1 else "1 core [h]" for cores in _CORES]
-    return markdown(("what", "jobs", *heads, "longest job"), rows)
-
-
 def joint_calibration():
     """Answers of the default study's open tests; None where the study has not been run."""
     path = Path("results", "study", "calibration.json")
@@ -287,7 +262,6 @@ MAKERS = {
     "study-shares": study_shares,
     "arrival-definitions": arrival_definitions,
     "cost-of-samples": cost_of_samples,
-    "times-on-a-cluster": times_on_a_cluster,
     "lmgc90-speed": lambda: markdown(SPEED_HEADER, speed_rows()),
     "faults": faults,
 }

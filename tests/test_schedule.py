@@ -1,22 +1,9 @@
-"""Schedules of bench/schedule.py: jobs read from a dry run, and how long they take on some cores."""
+"""CPU times of jobs from the logs of a study: bench/schedule.py."""
 
 import sys
 from pathlib import Path
 
 import pytest
-
-PRINTED = """
-rule draw_samples:
-    output: design.csv
-    log: logs/paper/draw_samples.log
-    jobid: 3
-
-rule simulate_batch:
-    input: design.csv, motion.yaml
-    output: a.nc
-    log: logs/paper/simulate_batch/ls-dem/configuration-1/000-009.log
-    jobid: 2
-"""
 
 
 @pytest.fixture
@@ -26,22 +13,6 @@ def schedule(monkeypatch):
 
     yield schedule
     sys.modules.pop("schedule")
-
-
-def test_jobs_of_a_dry_run(schedule):
-    first, second = schedule.read_plan(PRINTED)
-    assert (first.rule, first.key, first.samples, first.makes) == ("draw_samples", (), 1, ["design.csv"])
-    assert (second.rule, second.key, second.samples) == ("simulate_batch", ("ls-dem", "configuration-1"), 10)
-    assert second.needs == ["design.csv", "motion.yaml"]
-
-
-@pytest.mark.parametrize(("cores", "hours"), [(1, 9.0), (2, 5.0), (64, 3.0)])
-def test_hours_on_some_cores(cores, hours, schedule):
-    """One job of an hour, three of one, two and two hours that wait for it, and one of three that waits for none."""
-    jobs = [schedule.Job("first", (), 1, [], ["a"], 3600.0)]
-    jobs += [schedule.Job("more", (), 1, ["a"], [str(span)], 3600.0 * span) for span in (1, 2, 2)]
-    jobs.append(schedule.Job("alone", (), 1, ["elsewhere"], ["b"], 3 * 3600.0))
-    assert schedule.hours(jobs, cores) == pytest.approx(hours)
 
 
 def test_times_are_those_of_one_study_and_its_diagnoses(schedule, tmp_path):
