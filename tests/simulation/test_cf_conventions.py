@@ -21,7 +21,9 @@ def run(tmp_path_factory):
 
 def test_names_are_letters_digits_and_underscores(run):
     names = [*run.ncattrs(), *run.variables, *run.dimensions]
-    names += [name for variable in run.variables.values() for name in variable.ncattrs() if name != "_FillValue"]
+    names += [
+        name for variable in run.variables.values() for name in variable.ncattrs() if name != "_FillValue"
+    ]
     assert [name for name in names if not NAME.fullmatch(name)] == []
 
 
