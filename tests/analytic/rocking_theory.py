@@ -10,17 +10,17 @@ HALF_WIDTH = 0.4  # m
 
 
 class Rocker:
-    """Sharp 0.8 x 2.4 x 1.6 m block that pivots about its outermost nodes.
+    """Sharp block, 0.8 m wide unless said, 2.4 m deep and 1.6 m high, that pivots about its outermost nodes.
 
     ``pivot`` half distance of the two pivots [m]; ``alpha`` slenderness angle [rad]; ``radius`` from the
     pivot to the mass centre [m]; ``inertia`` about the pivot [kg m2]; ``p2`` squared frequency [1/s2];
     ``housner`` ratio of angular velocities in a plastic impact at the far pivot.
     """
 
-    def __init__(self, inset):
-        self.pivot = HALF_WIDTH - inset
-        self.mass = 0.8 * 2.4 * 1.6 * 2400.0
-        self.central = self.mass * (0.8**2 + 1.6**2) / 12.0
+    def __init__(self, inset, width=2.0 * HALF_WIDTH):
+        self.pivot = 0.5 * width - inset
+        self.mass = width * 2.4 * 1.6 * 2400.0
+        self.central = self.mass * (width**2 + 1.6**2) / 12.0
         self.alpha, self.radius = np.arctan(self.pivot / H), np.hypot(self.pivot, H)
         self.inertia = self.central + self.mass * self.radius**2
         self.p2 = self.mass * G * self.radius / self.inertia

@@ -40,6 +40,7 @@ ELSEWHERE = (
     "cases.*.intensity.levels",
     "cases.*.intensity.unit",
     *(f"cases.*.intensity.spectrum.{key}" for key in TargetSpectrum.model_fields),
+    "structure",
     "ensemble.table",
     "ensemble.distributions.*.values",
     "ensemble.distributions.*.probabilities",

@@ -185,6 +185,7 @@ ROWS = {
         (f"{_CASE}.name", "a b", "expected letters, digits"),
         (f"{_CASE}.name", "stronger", "there are two cases"),
         (f"{_CASE}.name", "draw_samples", "the workflow's rule draw_samples"),
+        ("structure", {"name": "inside"}, "expected a case whose `structure` names this file"),
         (f"{_CASE}.structure", "nothing.yaml", "readable file"),
         (f"{_CASE}.structure", "push.csv", "push.csv: expected"),
         (f"{_CASE}.structure", "lone.yaml", "expected a marker on a driven body"),

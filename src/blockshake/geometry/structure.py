@@ -187,10 +187,17 @@ def load_structure(source: StructureSource, parameters: Mapping[str, Any] | None
         mapping, where, folder = copy.deepcopy(dict(source)), "structure", Path()
     else:
         path = named_file("structures", source)
-        mapping, where, folder = load_yaml(path), str(source), path.parent
+        mapping, where, folder = _own_part(load_yaml(path)), str(source), path.parent
     mapping = spread(mapping, where)
     with _keys_as_given(mapping, parameters or {}, where):
         return build_structure(mapping, where, folder)
+
+
+def _own_part(mapping):
+    """The structure that a study's file holds, named as the study; another mapping as it is."""
+    if "cases" in mapping and isinstance(mapping.get("structure"), dict):
+        return {"name": mapping.get("name"), **mapping["structure"]}
+    return mapping
 
 
 @contextmanager

@@ -156,7 +156,10 @@ def _study_line(source):
     loaded = {}
     drawn = {case.name: DrawnMotions.of(case.model_dump(), loaded) for case in config.cases}
     motions = {name: list(one.strongest()) for name, one in drawn.items()}
-    records = [f"  {name}: {provenance(motion.attributes)}" for (name, _), motion in loaded.items()]
+    used = {record.path for one in drawn.values() for record in one.records}
+    records = [
+        f"  {name}: {provenance(motion.attributes)}" for (name, _), motion in loaded.items() if name in used
+    ]
     lines = [f"a study of {count_words(len(config.cases), 'case')} by {', '.join(models)}", *records]
     lines += [_choice_line(name, one) for name, one in drawn.items() if one.intensity.spectrum]
     remarks = [*_level_remarks(drawn), *_study_remarks(config, motions)]

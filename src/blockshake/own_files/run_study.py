@@ -120,6 +120,7 @@ def _seen_from(folder, study):
         return os.path.relpath(name, folder) if isinstance(name, str) and Path(name).exists() else name
 
     study = copy.deepcopy(study)
+    study.pop("structure", None)  # cases name the file that holds it
     for case in study["cases"]:
         case |= {key: moved(case[key]) for key in _FILES}
         case.setdefault("name", Path(case["structure"]).stem)

@@ -2,7 +2,7 @@
 
 import re
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, ConfigDict, Field, StringConstraints, field_validator, model_validator
 
@@ -298,6 +298,10 @@ class StudyConfig(Strict):
         description="by name: a solver's, or a solver's with words of yours after it, such as `ls-dem-as-printed`. "
         "Models of one solver run the same samples, and the report says how each differs from that of the plain name",
     )
+    structure: dict[str, Any] | None = Field(
+        None,
+        description="keys of a structure file; a case takes them whose `structure` names this file itself",
+    )
     cases: tuple[StudyCase, ...] = Field(min_length=1)
     ensemble: Ensemble
     ladder: Ladder = Ladder()
@@ -368,7 +372,11 @@ def load_config(path):
     InputError
         Unknown key, missing file, wrong structure or motion, a sample size below 10 and the like.
     """
-    return check_config(load_yaml(path), path)
+    config = check_config(load_yaml(path), path)
+    named = {Path(case.structure).resolve() for case in config.cases}
+    if config.structure is not None and Path(path).resolve() not in named:
+        raise InputError(path, "structure", "expected a case whose `structure` names this file")
+    return config
 
 
 def check_config(mapping, where):

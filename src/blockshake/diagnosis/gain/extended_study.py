@@ -117,7 +117,7 @@ def extend_study(verdict: AnyPath, study: AnyPath, output: AnyPath) -> list[str]
     kept = {
         key: value
         for key, value in load_yaml(study).items()
-        if key not in ("calibration", "diagnosis", "fragility")
+        if key not in ("calibration", "diagnosis", "fragility", "structure")
     }
     whole = {
         **kept,
