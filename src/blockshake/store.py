@@ -3,12 +3,14 @@
 import hashlib
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import xarray as xr
+from pydantic import BaseModel
 
 from blockshake.errors import InputError
 from blockshake.files import MADE_ANEW, content_digest, replacing, write_dataset, write_json
@@ -17,62 +19,86 @@ from blockshake.interrupts import delayed_interrupts
 _SEAL = 64  # bytes at the end of a kept file: the digest of its name and of all before them
 
 
+@dataclass(frozen=True)
+class Unit:
+    """One unit of work: `made` reads nothing but its fields, which are therefore all that its content follows from."""
+
+    decimals: ClassVar[dict[str, int] | None] = None  # kept of each unit in a dataset, see `write_dataset`
+
+    def made(self, checkpoint: Path) -> Any:
+        """The content: a JSON-like value, or a Dataset with the run's ``status`` and, if there is one, ``reason``."""
+        raise NotImplementedError
+
+    @property
+    def identity(self) -> str:
+        """Twelve hexadecimal digits of the kind of unit and of all of its fields."""
+        return content_digest(type(self).__name__, described(self))
+
+
+def described(value: Any) -> Any:
+    """JSON-like description of a value by its content; what has a ``digest`` is described by it.
+
+    Raises
+    ------
+    TypeError
+        Of a value that nothing is known of.
+    """
+    if isinstance(value, np.generic):
+        value = value.item()
+    if value is None or isinstance(value, (str, bool, int, float)):
+        return value
+    if isinstance(digest := getattr(value, "digest", None), str):
+        return digest
+    if isinstance(value, np.ndarray):
+        return content_digest(value.dtype.str, value.shape, np.ascontiguousarray(value).tobytes())
+    if isinstance(value, BaseModel):
+        return value.model_dump(mode="json")
+    if isinstance(value, Mapping):
+        return {str(key): described(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [described(one) for one in value]
+    if is_dataclass(value):
+        return {field.name: described(getattr(value, field.name)) for field in fields(value)}
+    raise TypeError(f"no description of a {type(value).__name__}")
+
+
 class Store(NamedTuple):
     """Folder of finished units, the digest of the sources that make them, and who hears of each.
 
-    A unit is named by the digest of the sources and of all that it follows from beside them: another source makes it
-    anew. It goes to the folder at once, whole or not at all; a run that was cut short goes on from a checkpoint there.
-    ``say`` is called with a line of text.
+    A unit is named by the digest of the sources and of its identity: another source makes it anew. It goes to the
+    folder at once, whole or not at all; a run that was cut short goes on from a checkpoint there. ``say`` is called
+    with a line of text.
     """
 
     folder: str | Path
     source: str
     say: Callable = print
 
-    def value(self, given, make):
-        """JSON-like value of a unit, made where the store has not got it.
-
-        Parameters
-        ----------
-        given : sequence
-            All that the unit follows from: arrays, and values as of `content_digest`.
-        make : callable
-            Of the path of a checkpoint: the value. All digits of its numbers are kept, NaN too.
-        """
-        path = self._path(given, ".json")
+    def value(self, unit: Unit):
+        """JSON-like value of a unit, made where the store has not got it; all digits of numbers are kept, NaN too."""
+        path = self._path(unit, ".json")
         if not kept(path):
-            value = make(path.with_suffix(".checkpoint"))
+            value = unit.made(path.with_suffix(".checkpoint"))
             _keep(path, lambda temporary: write_json(temporary, value))
         return json.loads(path.read_bytes()[:-_SEAL])
 
-    def dataset(self, words, given, make, decimals=None):
+    def dataset(self, words: str, unit: Unit):
         """File of the Dataset of a run, simulated where the store has not got it; a line says how the run ended.
 
-        Parameters
-        ----------
-        words : str
-            Which run it is.
-        given : sequence
-            All that the unit follows from: arrays, and values as of `content_digest`.
-        make : callable
-            Of the path of a checkpoint: the Dataset, with the run's ``status`` and, where there is one, ``reason`` as
-            attributes.
-        decimals : dict, optional
-            Decimal digits kept of each unit, see `write_dataset`.
+        ``words``: which run it is.
         """
-        path, how, cost, begin = self._path(given, ".nc"), "kept", "", time.monotonic()
+        path, how, cost, begin = self._path(unit, ".nc"), "kept", "", time.monotonic()
         if not kept(path):
-            made = make(path.with_suffix(".checkpoint"))
-            _keep(path, lambda temporary: write_dataset(temporary, made, decimals))
+            made = unit.made(path.with_suffix(".checkpoint"))
+            _keep(path, lambda temporary: write_dataset(temporary, made, unit.decimals))
             how, cost = "simulated", f"; took {time.monotonic() - begin:.3g} s"
-        with delayed_interrupts(), xr.open_dataset(path) as unit:
-            ended = f"{unit.attrs['status']} {unit.attrs.get('reason', '')}".rstrip()
+        with delayed_interrupts(), xr.open_dataset(path) as run:
+            ended = f"{run.attrs['status']} {run.attrs.get('reason', '')}".rstrip()
         self.say(f"{words}, {how}: {ended}{cost}")
         return path
 
-    def _path(self, given, suffix):
-        content = (part.tobytes() if isinstance(part, np.ndarray) else part for part in given)
-        return Path(self.folder, content_digest(self.source, *content)).with_suffix(suffix)
+    def _path(self, unit, suffix):
+        return Path(self.folder, content_digest(self.source, unit.identity)).with_suffix(suffix)
 
 
 def kept(path):
@@ -118,9 +144,3 @@ def _keep(path, write):
 
 def _seal(path, content):
     return hashlib.sha256(Path(path).name.encode() + b"\0" + content).hexdigest().encode()
-
-
-def structure_digest(structure):
-    """Twelve hexadecimal digits of a structure's content, solids of meshes included."""
-    solids = (solid.vertices.tobytes() for solid in structure.solids.values())
-    return content_digest(structure.file.model_dump(mode="json"), *solids)

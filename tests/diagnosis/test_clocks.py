@@ -87,7 +87,7 @@ def test_a_clock_that_starts_elsewhere_reads_the_same(campaign, tmp_path, zero):
         xr.testing.assert_identical(there[name], here[name])
     with a_formula():
         one, other = (plan_diagnosis(folder, "tiny") for folder in (str(campaign), moved))
-    digests, others = ([test.digest() for test in plan.tests.values()] for plan in (one, other))
+    digests, others = ([test.digest for test in plan.tests.values()] for plan in (one, other))
     assert digests == others
 
 

@@ -41,7 +41,7 @@ def diagnosis_cost(folder, effort, tried):
     count, parts, means = plan.effort.draws + plan.effort.twins, [], []
     for name, planned in plan.tests.items():
         for model in MODELS:
-            key = planned.digest(), model
+            key = planned.digest, model
             if key not in tried:
                 tried[key] = _seconds_of_draws(planned, model)
                 parts.append(CostPart(f"ensemble of {name}, {model}", count, count * tried[key]))

@@ -134,6 +134,12 @@ class Structure(Shown):
         solids = (self.solids[name].vertices.tobytes() for name in sorted(self.solids))
         return content_digest(self.file.model_dump(mode="json", exclude=without), *solids)
 
+    @property
+    def digest(self):
+        """Twelve hexadecimal digits of the file's content with its names, and of the solids of meshes."""
+        solids = (solid.vertices.tobytes() for solid in self.solids.values())
+        return content_digest(self.file.model_dump(mode="json"), *solids)
+
     def solid(self, body):
         """Solid of the body with this index, about its mass centre."""
         entry = self.file.bodies[body]

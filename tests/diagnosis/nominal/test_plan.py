@@ -36,7 +36,7 @@ def test_a_copy_of_a_campaign_has_the_same_ensembles(tmp_path):
     shutil.copytree(CAMPAIGN, copy)
     plan, other = (plan_diagnosis(folder, "standard") for folder in (CAMPAIGN, copy))
     test = next(iter(plan.tests))
-    assert plan.tests[test].digest() == other.tests[test].digest()
+    assert plan.tests[test].digest == other.tests[test].digest
 
 
 def test_a_sealed_test_is_simulated_as_an_open_one_under_its_motion():

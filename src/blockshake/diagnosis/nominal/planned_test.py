@@ -16,7 +16,6 @@ from blockshake.measurement.campaigns.recorded_test import structure_at_start
 from blockshake.measurement.campaigns.starting_places import standing
 from blockshake.measurement.motion.fall import find_fall, until_fall
 from blockshake.measurement.sensors.markers import RATE, unread_directions
-from blockshake.store import structure_digest
 
 _SAME_READING = 1e-3  # steps, within which two readings are at one time
 
@@ -58,10 +57,11 @@ class PlannedTest:
         """Peak acceleration of the commanded motion along x [m/s2]."""
         return float(np.abs(self.motion.evaluate(self.motion.table.breaks, derivative=2)[:, 0]).max())
 
+    @property
     def digest(self):
         """Digest of the content: equal for equal tests, whatever their files are called."""
         return content_digest(
-            structure_digest(self.structure),
+            self.structure.digest,
             *(part.tobytes() for part in self.motion.table),
             self.duration,
             self.sensors.model_dump(),

@@ -1,17 +1,22 @@
 """Synthetic readings that one sampled model gives for a planned test, and the histories that they show."""
 
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 
 from blockshake.diagnosis.nominal.histories import read_histories
+from blockshake.diagnosis.nominal.nominal_model import Draw
+from blockshake.diagnosis.nominal.planned_test import PlannedTest
 from blockshake.effects.effect import Experiment
 from blockshake.measurement.campaigns.clocks import since
 from blockshake.measurement.campaigns.starting_places import placed
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.simulation.models import part_parameters
 from blockshake.simulation.simulate import simulate
-from blockshake.store import load_made
+from blockshake.store import Unit, load_made
 
 _SLOW = 0.04  # s, standard deviation of a Gaussian that is some 0.1 s wide at half its height
 
@@ -93,13 +98,18 @@ def simulated_histories(words, planned, draw, store, extension=None):
         With the run's ``status`` as an attribute.
     """
 
-    def simulated(_):
-        test = simulated_test(planned, draw, extension)
-        read = read_histories(test, planned.structure, planned.sensors)
-        return read.assign_attrs(status=test.attrs["status"])
+    return load_made(store.dataset(words, _Histories(planned, draw, extension)))
 
-    given = (
-        planned.digest(), draw.model, draw.time_step, draw.parameters, draw.amplitude, draw.fast, draw.noise,
-        draw.places, draw.seed, extension.digest if extension else "",
-    )  # fmt: skip
-    return load_made(store.dataset(words, given, simulated))
+
+@dataclass(frozen=True)
+class _Histories(Unit):
+    """Histories of one simulated test."""
+
+    planned: PlannedTest
+    draw: Draw
+    extension: Any
+
+    def made(self, checkpoint):
+        test = simulated_test(self.planned, self.draw, self.extension)
+        read = read_histories(test, self.planned.structure, self.planned.sensors)
+        return read.assign_attrs(status=test.attrs["status"])

@@ -1,6 +1,6 @@
 """Simulated outcomes: how far a body leans in every test by models drawn over all unknowns, until it falls."""
 
-from functools import partial
+from dataclasses import dataclass
 
 import numpy as np
 import scipy
@@ -9,14 +9,15 @@ import xarray as xr
 from blockshake.diagnosis.nominal.nominal_model import MODELS
 from blockshake.diagnosis.outcomes.unknowns import UNKNOWNS, model_at
 from blockshake.dynamics.intensity import motion_figures
-from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.load_motion import load_motion, scaled
+from blockshake.dynamics.motion import GroundMotion
 from blockshake.dynamics.system import FALLEN, FINISHED
 from blockshake.files import named_file
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.geometry.structure import load_structure
+from blockshake.geometry.structure import Structure, load_structure
 from blockshake.measurement.checks.outcomes import standing_body
 from blockshake.simulation.simulate import simulate
-from blockshake.store import structure_digest
+from blockshake.store import Unit
 
 BATCH = 25  # tests
 _KEPT_RATE = 50.0  # Hz, of the orientations that are kept
@@ -58,7 +59,7 @@ def simulate_outcomes(campaign, batch, solver, draws, store):
         of the commanded motion along x.
     """
     structure = load_structure(campaign.structure)
-    body, identity = standing_body(structure), structure_digest(structure)
+    body = standing_body(structure)
     names = list(campaign.tests)[batch * BATCH : (batch + 1) * BATCH]
     leans, moved, shares, peaks = [], [], [], []
     for done, name in enumerate(names):
@@ -66,12 +67,11 @@ def simulate_outcomes(campaign, batch, solver, draws, store):
         shares.append(shares_of(batch * BATCH + done, draws))
         path = campaign.folder / entry.motion
         path = path if path.is_file() else named_file("motions", entry.motion)
-        figures = motion_figures(load_motion(path, entry.scale, entry.baseline))
+        motion = load_motion(path, baseline=entry.baseline)
+        figures = motion_figures(scaled(motion, entry.scale, path))
         peaks.append((figures["peak_acceleration"], figures["peak_velocity"]))
-        content = path.read_bytes()
         for number, own in enumerate(shares[-1]):
-            given = (solver, identity, content, entry.scale, str(entry.baseline), own)
-            made, settled = store.value(given, partial(_run, structure, body, path, entry, solver, own))
+            made, settled = store.value(_Outcome(structure, body, motion, entry.scale, solver, own))
             how = {"inf": "fell", "nan": "not finished"}.get(
                 f"{made:g}", f"leant by {np.degrees(made):.2g} degrees"
             )
@@ -91,15 +91,25 @@ def simulate_outcomes(campaign, batch, solver, draws, store):
     )
 
 
-def _run(structure, body, path, entry, solver, shares, checkpoint):
+@dataclass(frozen=True)
+class _Outcome(Unit):
     """Largest lean [rad] of one run, see `simulate_outcomes`, and what moved before the ground did, in words."""
-    built, factor = model_at(structure, body, solver, shares)
-    motion = load_motion(path, entry.scale * factor, entry.baseline)
-    run = simulate(built, motion, solver, output_rate=_KEPT_RATE, accelerometers=False)
-    if run.attrs["status"] not in FINISHED:
-        return np.nan, run.attrs["settled"]
-    if run.attrs["status"] in FALLEN:
-        return np.inf, run.attrs["settled"]
-    turned = rotation_matrices(run["orientation"][:, body].to_numpy())
-    lean = np.arccos(np.clip(np.einsum("nk,k->n", turned[:, 2], turned[0, 2]), -1.0, 1.0)).max()
-    return float(lean), run.attrs["settled"]
+
+    structure: Structure
+    body: int
+    motion: GroundMotion  # of scale 1
+    scale: float
+    solver: str
+    shares: np.ndarray  # of the unknowns
+
+    def made(self, checkpoint):
+        built, factor = model_at(self.structure, self.body, self.solver, self.shares)
+        motion = scaled(self.motion, self.scale * factor, self.motion.name)
+        run = simulate(built, motion, self.solver, output_rate=_KEPT_RATE, accelerometers=False)
+        if run.attrs["status"] not in FINISHED:
+            return np.nan, run.attrs["settled"]
+        if run.attrs["status"] in FALLEN:
+            return np.inf, run.attrs["settled"]
+        turned = rotation_matrices(run["orientation"][:, self.body].to_numpy())
+        lean = np.arccos(np.clip(np.einsum("nk,k->n", turned[:, 2], turned[0, 2]), -1.0, 1.0)).max()
+        return float(lean), run.attrs["settled"]

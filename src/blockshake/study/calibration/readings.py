@@ -1,5 +1,6 @@
 """Readings of the instruments of an open test, of the specimen and of every sample alike: curves and spectra."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -7,16 +8,17 @@ import pandas as pd
 import scipy
 import xarray as xr
 
+from blockshake.dynamics.motion import GroundMotion
 from blockshake.dynamics.system import FINISHED, Status
 from blockshake.files import content_digest, shipped_names
-from blockshake.geometry.structure import load_structure
+from blockshake.geometry.structure import Structure, load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.measurement.motion.compared_curves import curves_along_x
 from blockshake.measurement.sensors.accelerometers import CUTOFF, whole_channels
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.measurement.sensors.markers import driven_marker
 from blockshake.simulation.simulate import simulate
-from blockshake.store import load_made, structure_digest
+from blockshake.store import Unit, load_made
 from blockshake.study.ensembles.case_input import (
     MEASURED,
     check_known,
@@ -93,36 +95,48 @@ def simulate_readings(test, model, settings, rows, time_steps, ensemble, store):
         By sample; none for a run that ended for a numerical reason.
     """
     case, structure = test.case, structure_of_case(test.case, test.base)
-    identity = structure_digest(structure)
     motions = driving_motions(case, test.base, ensemble["seed"])
     found = []
     for sample, row in rows.iterrows():
-        motion = motions(sample, row)
         parameters = settings["parameters"] | sample_parameters(row, structure, ensemble["linked"])
-
-        def simulated(checkpoint, sample=sample, motion=motion, parameters=parameters):
-            for halving in range(_HALVINGS + 1):
-                run = simulate(
-                    structure, motion, model, parameters, time_step=time_steps[sample] / 2**halving,
-                    duration=case["duration"], output_rate=settings["output_rate"], checkpoint=checkpoint,
-                )  # fmt: skip
-                if run.attrs["status"] != Status.NOT_CONVERGED:
-                    break
-            noise = content_digest("noise", test.name, model, identity, ensemble["seed"], int(sample))
-            read = observe(run, structure, test.instruments, int(noise, 16))
-            along = read[["marker_displacement"]].sel(axis=["x"])
-            along = along.assign(log_spectrum=log_spectrum(read, structure, case["duration"]))
-            return along.assign_attrs(status=run.attrs["status"])
-
-        given = (
-            "readings", test.name, model, identity, *motion.table, case["duration"], settings["output_rate"],
-            time_steps[sample], parameters, int(sample), test.instruments.model_dump(),
+        noise = content_digest("noise", test.name, model, structure.digest, ensemble["seed"], int(sample))
+        unit = _Readings(
+            structure, motions(sample, row), model, parameters, float(time_steps[sample]), case["duration"],
+            settings["output_rate"], test.instruments, int(noise, 16),
         )  # fmt: skip
-        words = f"{structure.file.name} {model} sample {sample}"
-        path = store.dataset(words, given, simulated, _DECIMALS)
+        path = store.dataset(f"{structure.file.name} {model} sample {sample}", unit)
         status = load_made(path, ("marker_displacement", "log_spectrum")).attrs["status"]
         found.append(path if status in FINISHED else None)
     return found
+
+
+@dataclass(frozen=True)
+class _Readings(Unit):
+    """Synthetic readings of one sample."""
+
+    decimals = _DECIMALS
+    structure: Structure
+    motion: GroundMotion
+    model: str
+    parameters: dict
+    time_step: float  # [s]
+    duration: float  # [s]
+    output_rate: float  # [Hz]
+    instruments: Instruments
+    noise: int  # seed of the sensors' noise
+
+    def made(self, checkpoint):
+        for halving in range(_HALVINGS + 1):
+            run = simulate(
+                self.structure, self.motion, self.model, self.parameters, time_step=self.time_step / 2**halving,
+                duration=self.duration, output_rate=self.output_rate, checkpoint=checkpoint,
+            )  # fmt: skip
+            if run.attrs["status"] != Status.NOT_CONVERGED:
+                break
+        read = observe(run, self.structure, self.instruments, self.noise)
+        along = read[["marker_displacement"]].sel(axis=["x"])
+        along = along.assign(log_spectrum=log_spectrum(read, self.structure, self.duration))
+        return along.assign_attrs(status=run.attrs["status"])
 
 
 def displacement_curves(test, files):

@@ -1,15 +1,18 @@
 """Samples simulated one after the other, each kept at once, so that a killed batch resumes."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import pandas as pd
 
+from blockshake.dynamics.motion import GroundMotion
 from blockshake.errors import InputError
+from blockshake.geometry.structure import Structure
 from blockshake.measurement.sensors.markers import driven_marker
 from blockshake.simulation.models import solver_of
 from blockshake.simulation.run_histories import joint_figures
 from blockshake.simulation.simulate import simulate
-from blockshake.store import structure_digest
+from blockshake.store import Unit
 from blockshake.study.ensembles.case_input import structure_of_case
 from blockshake.study.ensembles.ensemble import DECIMALS, run_as_sample
 from blockshake.study.sampling.sample_parameters import sample_parameters
@@ -57,28 +60,41 @@ def simulate_samples(runs, motions, rows, store, base=None):
     case, model, settings, _, output_rate = runs
     solver = solver_of(model).name
     structure = structure_of_case(case, base)
-    identity = structure_digest(structure)
     finished = []
     for sample, row in rows.iterrows():
-        motion, parameters = motions(sample, row), runs.parameters(row, structure)
-
-        def simulated(checkpoint, sample=sample, row=row, motion=motion, parameters=parameters):
-            run = simulate(
-                structure, motion, solver, parameters,
-                time_step=settings["time_step"], duration=case["duration"], output_rate=output_rate,
-                accelerometers=False, checkpoint=checkpoint,
-            )  # fmt: skip
-            member = run.drop_dims("joint").merge(joint_figures(run, structure))
-            ensemble = run_as_sample(member, sample, row, driven_marker(structure))
-            return ensemble.assign_attrs(status=run.attrs["status"], reason=run.attrs["reason"])
-
-        given = (
-            solver, identity, *motion.table, case["duration"], output_rate, settings["time_step"], parameters,
-            int(sample), row.to_dict(),
+        unit = _SampleRun(
+            structure, motions(sample, row), solver, runs.parameters(row, structure), settings["time_step"],
+            case["duration"], output_rate, int(sample), row.to_dict(),
         )  # fmt: skip
         words = f"{case.get('name', structure.file.name)} {model} sample {sample}"
-        finished.append(store.dataset(words, given, simulated, DECIMALS))
+        finished.append(store.dataset(words, unit))
     return finished
+
+
+@dataclass(frozen=True)
+class _SampleRun(Unit):
+    """Ensemble of one sample."""
+
+    decimals = DECIMALS
+    structure: Structure
+    motion: GroundMotion
+    solver: str
+    parameters: dict
+    time_step: float  # [s]
+    duration: float  # [s]
+    output_rate: float | None  # [Hz]
+    sample: int
+    values: dict  # sampled ones, by dotted name
+
+    def made(self, checkpoint):
+        run = simulate(
+            self.structure, self.motion, self.solver, self.parameters, time_step=self.time_step,
+            duration=self.duration, output_rate=self.output_rate, accelerometers=False, checkpoint=checkpoint,
+        )  # fmt: skip
+        member = run.drop_dims("joint").merge(joint_figures(run, self.structure))
+        slab = driven_marker(self.structure)
+        ensemble = run_as_sample(member, self.sample, pd.Series(self.values, dtype=float), slab)
+        return ensemble.assign_attrs(status=run.attrs["status"], reason=run.attrs["reason"])
 
 
 def batch_rows(batch, files):

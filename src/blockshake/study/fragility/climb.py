@@ -1,15 +1,18 @@
 """Samples of a case that climb the ladder of intensities, each until its potential collapse."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import xarray as xr
 
 from blockshake.dynamics.load_motion import scaled
+from blockshake.dynamics.motion import GroundMotion
 from blockshake.dynamics.system import FINISHED, Status
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.geometry.structure import load_structure
+from blockshake.geometry.structure import Structure, load_structure
 from blockshake.simulation.run_histories import drift_histories
 from blockshake.simulation.simulate import simulate
-from blockshake.store import structure_digest
+from blockshake.store import Unit
 from blockshake.study.ensembles.case_input import COMMANDED, driving_motions
 from blockshake.study.ensembles.drift_limits import drift_limits
 from blockshake.study.ensembles.ensemble import describe
@@ -96,7 +99,9 @@ def climb(structure, runs, motion, parameters, ladder, store):
     """
     rungs, limits = [], drift_limits(structure, ladder.largest_drift)
     for scale in ladder.scales.tolist():
-        outcome = _rung(structure, runs, scaled(motion, scale, motion.name), parameters, store)
+        driven_by = scaled(motion, scale, motion.name)
+        step, duration = runs.settings["time_step"], runs.case["duration"]
+        outcome = store.value(_Rung(structure, driven_by, runs.model, parameters, step, duration))
         ratio = float(np.nanmax(outcome.pop("drift") / limits))
         passed = outcome["status"] == Status.COMPLETED and ratio <= 1.0
         rungs.append({"scale": scale, **outcome, "drift_ratio": ratio, "passed": passed})
@@ -105,22 +110,26 @@ def climb(structure, runs, motion, parameters, ladder, store):
     return rungs
 
 
-def _rung(structure, runs, motion, parameters, store):
+@dataclass(frozen=True)
+class _Rung(Unit):
     """How one run ended, and the largest drift of each body along x in it [m]."""
-    time_step, duration = runs.settings["time_step"], runs.case["duration"]
 
-    def simulated(checkpoint):
+    structure: Structure
+    motion: GroundMotion
+    model: str
+    parameters: dict
+    time_step: float  # [s]
+    duration: float  # [s]
+
+    def made(self, checkpoint):
         run = simulate(
-            structure, motion, runs.model, parameters, time_step=time_step, duration=duration, accelerometers=False,
-            checkpoint=checkpoint,
+            self.structure, self.motion, self.model, self.parameters, time_step=self.time_step,
+            duration=self.duration, accelerometers=False, checkpoint=checkpoint,
         )  # fmt: skip
         turns = rotation_matrices(run["orientation"].to_numpy())
-        moved = drift_histories(structure, run["position"].to_numpy(), turns)[..., 0]
+        moved = drift_histories(self.structure, run["position"].to_numpy(), turns)[..., 0]
         drift = np.nanmax(np.abs(moved), axis=0).tolist()
         return {"status": run.attrs["status"], "reason": run.attrs["reason"], "drift": drift}
-
-    given = "rung", runs.model, structure_digest(structure), *motion.table, parameters, time_step, duration
-    return store.value(given, simulated)
 
 
 def _words(rungs):

@@ -1,16 +1,17 @@
 """Contact stiffness from wave speed: a step of velocity sent up a tower, as in the paper's Figs. 9 and 10."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, NamedTuple, TypedDict
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
-from blockshake.geometry.structure import StructureSource, load_structure
+from blockshake.geometry.structure import Structure, StructureSource, load_structure
 from blockshake.simulation.models import model_of
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
-from blockshake.store import structure_digest
+from blockshake.store import Unit
 from blockshake.study.sampling.sample_parameters import structure_parameters
 from blockshake.study.stiffness.tower import tower_of
 from blockshake.study.stiffness.wave_step import (
@@ -166,15 +167,22 @@ def calibrate_design(structure, design, linked, store):
         With the design's index: ``ls_dem.normal_stiffness`` and ``ls_dem.shear_stiffness`` [N/m3].
     """
     loaded = load_structure(structure)
-    identity, rows = structure_digest(loaded), []
+    rows = []
     for _, row in design.iterrows():
         parameters = structure_parameters(row, loaded, linked)
-        calibrated = store.value(
-            ("stiffness", identity, parameters),
-            lambda _, given=parameters: calibrate_stiffness(loaded, given),
-        )
-        rows.append(stiffness_parameters(calibrated))
+        rows.append(stiffness_parameters(store.value(_Stiffness(loaded, parameters))))
     return pd.DataFrame(rows, index=design.index)
+
+
+@dataclass(frozen=True)
+class _Stiffness(Unit):
+    """Calibrated stiffness of one sample."""
+
+    structure: Structure
+    parameters: dict  # of the structure, by dotted name
+
+    def made(self, checkpoint):
+        return calibrate_stiffness(self.structure, self.parameters)
 
 
 def stiffness_parameters(calibrated):
