@@ -10,7 +10,7 @@ from blockshake.dynamics.system import FINISHED
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.markers import driven_marker
 from blockshake.store import Store
-from blockshake.study.ensembles.batch import CaseRuns, simulate_samples
+from blockshake.study.ensembles.batch import CaseRuns, samples_of, simulate_samples
 from blockshake.study.ensembles.case_input import driving_motions
 from blockshake.study.ensembles.ensemble import join_batches, relative_to_slab
 from blockshake.study.sampling.distributions import LINKED
@@ -40,7 +40,7 @@ def simulated(step, rows, linked, store):
     motions = driving_motions(CASE, None, SEEDS[0])
     runs = CaseRuns(CASE, "ls-dem", {"time_step": step}, linked, 200.0)
     files = simulate_samples(runs, motions, rows, Store(store, "", _log.info))
-    ensemble = join_batches(files)
+    ensemble = join_batches(samples_of(files, rows))
     assert np.isin(ensemble["status"], FINISHED).all()
     drift = relative_to_slab(ensemble["marker_displacement"], driven_marker(structure))
     return drift.sel(marker="block-3-face", axis="x").transpose("sample", "time").to_numpy()

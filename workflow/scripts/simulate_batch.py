@@ -1,7 +1,7 @@
 from blockshake.files import write_dataset
 from blockshake.log import logging_to
 from blockshake.store import Store
-from blockshake.study.ensembles.batch import DECIMALS, CaseRuns, batch_rows, simulate_samples
+from blockshake.study.ensembles.batch import DECIMALS, CaseRuns, batch_rows, samples_of, simulate_samples
 from blockshake.study.ensembles.case_input import driving_motions
 from blockshake.study.ensembles.ensemble import join_batches
 
@@ -9,5 +9,5 @@ with logging_to(snakemake.log[0]) as say:
     params, input, runs = snakemake.params, snakemake.input, CaseRuns(**snakemake.params.runs)
     motions = driving_motions(runs.case, input.base, params.seed)
     rows, store = batch_rows(snakemake.wildcards.batch, input), Store(params.store, params.source, say)
-    samples = simulate_samples(runs, motions, rows, store, input.base)
-    write_dataset(snakemake.output[0], join_batches(samples), DECIMALS)
+    files = simulate_samples(runs, motions, rows, store, input.base)
+    write_dataset(snakemake.output[0], join_batches(samples_of(files, rows)), DECIMALS)

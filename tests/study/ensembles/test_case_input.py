@@ -14,7 +14,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.simulation.simulate import simulate
 from blockshake.store import Store
-from blockshake.study.ensembles.batch import CaseRuns, simulate_samples
+from blockshake.study.ensembles.batch import CaseRuns, samples_of, simulate_samples
 from blockshake.study.ensembles.case_input import (
     driving_motions,
     measured_input,
@@ -80,9 +80,8 @@ def score(case, tmp_path):
         values = 0.5 * np.exp(0.05 * np.linspace(-1.6, 1.6, SIZE))
         runs = CaseRuns({**case, "input": driven_by}, "nscd-rigid", {"time_step": 1e-3}, {}, 200.0)
         motions = driving_motions(runs.case, base, 1)
-        finished = simulate_samples(
-            runs, motions, pd.DataFrame({FRICTION: values}), Store(tmp_path / "store", "test")
-        )
+        rows = pd.DataFrame({FRICTION: values})
+        finished = samples_of(simulate_samples(runs, motions, rows, Store(tmp_path / "store", "test")), rows)
         measured, noise = measured_on_clock(named, base)
         read, _, _, readings = compared_curves(measured, join_batches(finished), noise, 1)
         return np.nanmean(crps(readings, read.to_numpy()))

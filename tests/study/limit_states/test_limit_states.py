@@ -14,7 +14,7 @@ from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import load_structure
 from blockshake.statistics.intervals import share_interval
 from blockshake.store import Store
-from blockshake.study.ensembles.batch import CaseRuns, simulate_samples
+from blockshake.study.ensembles.batch import CaseRuns, samples_of, simulate_samples
 from blockshake.study.ensembles.case_input import driving_motions
 from blockshake.study.ensembles.ensemble import sample_figures
 from blockshake.study.limit_states.limit_states import limit_states_of_case
@@ -182,7 +182,8 @@ def test_the_chance_to_overturn_is_that_of_direct_integration(tmp_path):
     }  # fmt: skip
     runs = CaseRuns(case, "nscd-rigid", {"time_step": 1e-3}, {}, 100.0)
     values = pd.DataFrame({"motion.scale": scales})
-    batches = simulate_samples(runs, driving_motions(case, None, 1), values, Store(tmp_path / "store", "t"))
+    files = simulate_samples(runs, driving_motions(case, None, 1), values, Store(tmp_path / "store", "t"))
+    batches = samples_of(files, values)
     limits = {"tips": {"body": "block", "tilt": "40 deg"}}
     found = limit_states_of_case(batches, case, None, {}, limits, 1)
     exceeded = found["exceeded"].sel(limit="tips").to_numpy()
@@ -195,7 +196,7 @@ def test_the_chance_to_overturn_is_that_of_direct_integration(tmp_path):
     count = int(exceeded.sum())
     assert tuple(found["probability_interval"].sel(limit="tips").values) == share_interval(count, len(scales))
     assert f"tips (tilt over 40 deg): {count} of 17 samples" in sentence(found.sel(limit="tips"))
-    made = sample_figures(xr.concat([xr.open_dataset(one) for one in batches], dim="sample"))
+    made = sample_figures(xr.concat(batches, dim="sample"))
     write_dataset(tmp_path / "results" / "samples" / "nscd-rigid" / "block.nc", made)
     write_dataset(tmp_path / "results" / "limits" / "nscd-rigid" / "block.nc", found)
     study = {"cases": [case], "models": ["nscd-rigid"], "limits": limits, "ensemble": {"seed": 1}}

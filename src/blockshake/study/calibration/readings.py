@@ -27,7 +27,7 @@ from blockshake.study.ensembles.case_input import (
     measured_on_clock,
     structure_of_case,
 )
-from blockshake.study.sampling.sample_parameters import sample_parameters
+from blockshake.study.sampling.sample_parameters import used_parameters
 
 _SEGMENT = 1.0  # s, of the spectra: lines 1 Hz apart
 # of the step of a run that does not converge: joints of a hollow face or of many blocks ask for less
@@ -98,7 +98,7 @@ def simulate_readings(test, model, settings, rows, time_steps, ensemble, store):
     motions = driving_motions(case, test.base, ensemble["seed"])
     found = []
     for sample, row in rows.iterrows():
-        parameters = settings["parameters"] | sample_parameters(row, structure, ensemble["linked"])
+        parameters = settings["parameters"] | used_parameters(row, structure, ensemble["linked"], model)
         noise = content_digest("noise", test.name, model, structure.digest, ensemble["seed"], int(sample))
         unit = _Readings(
             structure, motions(sample, row), model, parameters, float(time_steps[sample]), case["duration"],

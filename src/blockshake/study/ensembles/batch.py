@@ -12,10 +12,10 @@ from blockshake.measurement.sensors.markers import driven_marker
 from blockshake.simulation.models import solver_of
 from blockshake.simulation.run_histories import joint_figures
 from blockshake.simulation.simulate import simulate
-from blockshake.store import Unit
+from blockshake.store import Unit, load_made
 from blockshake.study.ensembles.case_input import structure_of_case
-from blockshake.study.ensembles.ensemble import DECIMALS, run_as_sample
-from blockshake.study.sampling.sample_parameters import sample_parameters
+from blockshake.study.ensembles.ensemble import DECIMALS, as_sample, run_alone
+from blockshake.study.sampling.sample_parameters import used_parameters
 from blockshake.study.sampling.sample_table import load_design
 
 HALF_STEP = "half-step"  # batch of the twin: the first sample at half the time step
@@ -33,12 +33,12 @@ class CaseRuns(NamedTuple):
     output_rate: float | None = None  # [Hz]; the usual one where it is None
 
     def parameters(self, row, structure):
-        """Parameters of a sample, whose values are ``row``, by dotted name."""
-        return self.settings.get("parameters", {}) | sample_parameters(row, structure, self.linked)
+        """Parameters of a sample, whose values are ``row``, that the model has a use for, by dotted name."""
+        return self.settings.get("parameters", {}) | used_parameters(row, structure, self.linked, self.model)
 
 
 def simulate_samples(runs, motions, rows, store, base=None):
-    """Ensembles of one sample each, simulated where the store has not got them.
+    """Runs of samples, simulated where the store has not got them.
 
     Parameters
     ----------
@@ -54,8 +54,9 @@ def simulate_samples(runs, motions, rows, store, base=None):
     Returns
     -------
     list of Path
-        Files in the store, in the order of ``rows``: what `run_as_sample` keeps of a run, with the run's ``status``
-        and ``reason`` as attributes.
+        Files in the store, in the order of ``rows``, for `samples_of`: the `run_alone` of each, with the run's
+        ``status`` and ``reason`` as attributes. Samples whose values differ only where the model has no use for them
+        have one file.
     """
     case, model, settings, _, output_rate = runs
     solver = solver_of(model).name
@@ -64,7 +65,7 @@ def simulate_samples(runs, motions, rows, store, base=None):
     for sample, row in rows.iterrows():
         unit = _SampleRun(
             structure, motions(sample, row), solver, runs.parameters(row, structure), settings["time_step"],
-            case["duration"], output_rate, int(sample), row.to_dict(),
+            case["duration"], output_rate,
         )  # fmt: skip
         words = f"{case.get('name', structure.file.name)} {model} sample {sample}"
         finished.append(store.dataset(words, unit))
@@ -73,7 +74,7 @@ def simulate_samples(runs, motions, rows, store, base=None):
 
 @dataclass(frozen=True)
 class _SampleRun(Unit):
-    """Ensemble of one sample."""
+    """What an ensemble keeps of one run."""
 
     decimals = DECIMALS
     structure: Structure
@@ -83,8 +84,6 @@ class _SampleRun(Unit):
     time_step: float  # [s]
     duration: float  # [s]
     output_rate: float | None  # [Hz]
-    sample: int
-    values: dict  # sampled ones, by dotted name
 
     def made(self, checkpoint):
         run = simulate(
@@ -92,9 +91,14 @@ class _SampleRun(Unit):
             duration=self.duration, output_rate=self.output_rate, accelerometers=False, checkpoint=checkpoint,
         )  # fmt: skip
         member = run.drop_dims("joint").merge(joint_figures(run, self.structure))
-        slab = driven_marker(self.structure)
-        ensemble = run_as_sample(member, self.sample, pd.Series(self.values, dtype=float), slab)
-        return ensemble.assign_attrs(status=run.attrs["status"], reason=run.attrs["reason"])
+        alone = run_alone(member, driven_marker(self.structure))
+        return alone.assign_attrs(status=run.attrs["status"], reason=run.attrs["reason"])
+
+
+def samples_of(files, rows):
+    """Ensembles of one sample each, for `join_batches`, from the files of `simulate_samples` of these ``rows``."""
+    pairs = zip(files, rows.iterrows(), strict=True)
+    return [as_sample(load_made(file), int(sample), row) for file, (sample, row) in pairs]
 
 
 def batch_rows(batch, files):

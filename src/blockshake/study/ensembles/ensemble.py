@@ -20,48 +20,33 @@ _OF_ONE_RUN = ("status", "reason", "settled", "end_time", "sample", "parameters"
 
 
 def run_as_sample(run, sample, values, slab_marker):
-    """Ensemble of one run, which `join_batches` joins to others of the same structure, motion and model.
+    """`as_sample` of the `run_alone` of a run: an ensemble of one, which `join_batches` joins to others."""
+    return as_sample(run_alone(run, slab_marker), sample, values)
+
+
+def run_alone(run, slab_marker):
+    """What an ensemble keeps of a run, whatever sample it stands for.
 
     Parameters
     ----------
     run : xarray.Dataset
         Content of a run file, with `joint_figures` in place of the joints' histories.
-    sample : int
-        Its row in the design.
-    values : pandas.Series
-        Sampled values by dotted name.
     slab_marker : str
         Marker on the driven body that displacements are relative to in the frame ``slab``.
 
     Returns
     -------
     xarray.Dataset
-        Along ``sample``: ``marker_displacement(sample, time, marker, axis)`` and ``position(sample, time, body, axis)``
-        [m], inertial frame; ``orientation(sample, time, body, quaternion)``; ``status`` and ``reason``;
-        ``end_time`` [s]; ``peak`` and ``residual(sample, frame, marker)`` [m], along x;
-        ``peak_rotation(sample, body)`` [rad]; the run's `joint_figures`, ``(sample, joint)`` or ``(sample)``;
-        ``parameter_value(sample, parameter)``; and the run's figures of its computation, ``energy_residual`` and
-        ``numerics_*``. Attributes: the others of the run, and ``slab_marker``.
+        Along ``sample``, of size 1: ``marker_displacement(sample, time, marker, axis)`` and ``position(sample, time,
+        body, axis)`` [m], inertial frame; ``orientation(sample, time, body, quaternion)``; ``status`` and ``reason``;
+        ``end_time`` [s]; ``peak`` and ``residual(sample, frame, marker)`` [m], along x; ``peak_rotation(sample, body)``
+        [rad]; the run's `joint_figures`, ``(sample, joint)`` or ``(sample)``; and the run's figures of its computation,
+        ``energy_residual`` and ``numerics_*``. Attributes: the others of the run, and ``slab_marker``.
     """
     kept = run[["marker_displacement", "position", "orientation", *JOINT_FIGURES, *BLOW_FIGURES]]
     kept = kept.assign(peak_rotation=_peak_rotation(run["orientation"]))
     kept = kept.transpose("time", "marker", "body", "joint", "axis", "quaternion")
-    index = xr.DataArray([sample], dims="sample", attrs={"long_name": "row of the sample in its design"})
-    names = [str(name) for name in values.index]
-    ensemble = (
-        kept.expand_dims(sample=1)
-        .assign_coords(sample=index)
-        .assign(_endings(run.attrs))
-        .assign_coords(
-            parameter=("parameter", names, {"long_name": "dotted name of the parameter"}),
-            parameter_unit=("parameter", [parameter_unit(name) for name in names], {"long_name": "its unit"}),
-            parameter_value=(
-                ("sample", "parameter"),
-                values.to_numpy(dtype=float)[None],
-                {"long_name": "sampled value, in parameter_unit"},
-            ),
-        )
-    )
+    ensemble = kept.expand_dims(sample=1).assign(_endings(run.attrs))
     ensemble.attrs = {
         **_common([run.attrs]),
         "Conventions": "CF-1.11",
@@ -69,6 +54,25 @@ def run_as_sample(run, sample, values, slab_marker):
         "slab_marker": slab_marker,
     }
     return ensemble.assign(_extremes(ensemble))
+
+
+def as_sample(alone, sample, values):
+    """Ensemble of a `run_alone` as a sample: its row in the design, and its sampled values by dotted name, a Series.
+
+    It has ``parameter_value(sample, parameter)``, in ``parameter_unit``.
+    """
+    names = [str(name) for name in values.index]
+    index = xr.DataArray([sample], dims="sample", attrs={"long_name": "row of the sample in its design"})
+    return alone.assign_coords(
+        sample=index,
+        parameter=("parameter", names, {"long_name": "dotted name of the parameter"}),
+        parameter_unit=("parameter", [parameter_unit(name) for name in names], {"long_name": "its unit"}),
+        parameter_value=(
+            ("sample", "parameter"),
+            values.to_numpy(dtype=float)[None],
+            {"long_name": "sampled value, in parameter_unit"},
+        ),
+    )
 
 
 def join_batches(batches, without=(), chosen=None):

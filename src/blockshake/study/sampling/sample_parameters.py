@@ -18,6 +18,13 @@ def sample_parameters(row, structure, linked):
     return {name: value for name, value in values.items() if has_parameter(structure, name)}
 
 
+def used_parameters(row, structure, linked, model):
+    """`sample_parameters` without those that cannot matter to a model."""
+    given = sample_parameters(row, structure, linked)
+    unused = unused_variables(given, model, given)
+    return {name: value for name, value in given.items() if name not in unused}
+
+
 def structure_parameters(row, structure, linked):
     """`sample_parameters` without those of a solver: what `Structure.with_parameters` takes."""
     return part_parameters(sample_parameters(row, structure, linked))[0]

@@ -170,19 +170,20 @@ def calibrate_design(structure, design, linked, store):
     rows = []
     for _, row in design.iterrows():
         parameters = structure_parameters(row, loaded, linked)
-        rows.append(stiffness_parameters(store.value(_Stiffness(loaded, parameters))))
+        rows.append(
+            stiffness_parameters(store.value(_Stiffness(tower_of(loaded.with_parameters(parameters)))))
+        )
     return pd.DataFrame(rows, index=design.index)
 
 
 @dataclass(frozen=True)
 class _Stiffness(Unit):
-    """Calibrated stiffness of one sample."""
+    """Calibrated stiffness of the tower of a sample, which has neither friction nor other shapes of the structure."""
 
-    structure: Structure
-    parameters: dict  # of the structure, by dotted name
+    tower: Structure
 
     def made(self, checkpoint):
-        return calibrate_stiffness(self.structure, self.parameters)
+        return calibrate_stiffness(self.tower)
 
 
 def stiffness_parameters(calibrated):
