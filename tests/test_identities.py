@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from blockshake.diagnosis.gain.extended_model import Extension
+from blockshake.diagnosis.nominal.clean_runs import _CleanRun
 from blockshake.diagnosis.nominal.nominal_model import draw_nominal
 from blockshake.diagnosis.nominal.planned_test import PlannedTest
 from blockshake.diagnosis.nominal.simulated_test import _Histories
@@ -41,6 +42,8 @@ VALUES = {
     "body": (1, 2),
     "scale": (1.0, 2.0),
     "shares": (np.zeros(8), np.ones(8)),
+    "tests": ((("a", PLANNED, ("c",)),), (("b", PLANNED, ("c",)),), (("a", PLANNED, ()),)),
+    "number": (0, 1),
     "planned": (PLANNED, replace(PLANNED, duration=2.0)),
     "draw": (DRAW, replace(DRAW, seed=DRAW.seed + 1), replace(DRAW, places=DRAW.places + 1e-6)),
     "extension": (None, Extension((), 0, "a")),
@@ -54,11 +57,11 @@ def kinds():
 
 def test_all_kinds_are_looked_at():
     assert {one.__name__ for one in kinds()} == {
-        "_Histories", "_Outcome", "_Readings", "_Rung", "_SampleRun", "_Stiffness",
+        "_CleanRun", "_Histories", "_Outcome", "_Readings", "_Rung", "_SampleRun", "_Stiffness",
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("kind", [_Histories, _Outcome, _Readings, _Rung, _SampleRun, _Stiffness])
+@pytest.mark.parametrize("kind", [_CleanRun, _Histories, _Outcome, _Readings, _Rung, _SampleRun, _Stiffness])
 def test_another_value_of_any_field_is_another_unit(kind):
     names = [field.name for field in fields(kind)]
     unit = kind(**{name: VALUES[name][0] for name in names})

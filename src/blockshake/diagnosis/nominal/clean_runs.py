@@ -1,6 +1,6 @@
 """One nominal model of all open tests of a campaign, seen and judged as the measured tests are."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from blockshake.effects.impact_restitution import EFFECT as RESTITUTION
 from blockshake.forces.seen.seen_test import see_test, why_unseen
 from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.motion.fall import find_fall, until_fall
+from blockshake.store import Unit
 
 
 def simulate_clean_runs(planned, channels, solver, count, store):
@@ -39,13 +40,8 @@ def simulate_clean_runs(planned, channels, solver, count, store):
     """
     runs = []
     for number in range(count):
-        given = (
-            "clean",
-            solver,
-            number,
-            [(name, one.digest(), channels[name]) for name, one in planned.items()],
-        )
-        runs.append(store.value(given, lambda _, number=number: _gains(planned, channels, solver, number)))
+        tests = tuple((name, one, tuple(channels[name])) for name, one in planned.items())
+        runs.append(store.value(_CleanRun(tests, solver, number)))
         store.say(f"clean runs by {solver} {number + 1}/{count}: {_words(runs[-1])}")
     return runs
 
@@ -58,11 +54,23 @@ def gains_by_cause(seen):
     return gains | {RESTITUTION.name: restitution_gain(seen).gain}
 
 
-def _gains(planned, channels, solver, number):
+@dataclass(frozen=True)
+class _CleanRun(Unit):
+    """Evidence of every cause in the tests of one nominal model."""
+
+    tests: tuple  # of name, `PlannedTest` and names of the channels, in the order of the noise's seeds
+    solver: str
+    number: int
+
+    def made(self, checkpoint):
+        return _gains(self.tests, self.solver, self.number)
+
+
+def _gains(tests, solver, number):
     seen = [
         see_test(name, readings, test.structure, test.sensors)
-        for index, (name, test) in enumerate(planned.items())
-        if (readings := _readings(test, channels[name], solver, number, index)) is not None
+        for index, (name, test, channels) in enumerate(tests)
+        if (readings := _readings(test, channels, solver, number, index)) is not None
     ]
     return gains_by_cause(seen) if seen else {}
 

@@ -74,7 +74,7 @@ def simulate_samples(runs, motions, rows, store, base=None):
 
 @dataclass(frozen=True)
 class _SampleRun(Unit):
-    """What an ensemble keeps of one run."""
+    """The `run_alone` of one run."""
 
     decimals = DECIMALS
     structure: Structure

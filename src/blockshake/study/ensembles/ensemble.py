@@ -25,7 +25,7 @@ def run_as_sample(run, sample, values, slab_marker):
 
 
 def run_alone(run, slab_marker):
-    """What an ensemble keeps of a run, whatever sample it stands for.
+    """Histories and figures that an ensemble keeps of a run, whatever sample it stands for.
 
     Parameters
     ----------
