@@ -8,7 +8,6 @@ import numpy.typing as npt
 from scipy.interpolate import CubicSpline, PPoly
 
 from blockshake.errors import InputError
-from blockshake.files import content_digest
 from blockshake.jit import borrowing_kernel
 from blockshake.tables.shown import Shown
 
@@ -47,12 +46,6 @@ class GroundMotion(Shown):
         for channel, unit, peak in zip(CHANNELS, ("m/s2", "m/s2", "m/s2", "rad/s2"), peaks, strict=True):
             yield f"peak acceleration, {channel}", f"{peak:.4g} {unit}"
         yield from self.attributes.items()
-
-    @property
-    def digest(self) -> str:
-        """Twelve hexadecimal digits of the motion with its name and provenance."""
-        told = {key: str(value) for key, value in self.attributes.items()}
-        return content_digest(self.name, self.kind, told, *(part.tobytes() for part in self.table))
 
     @property
     def duration(self) -> float:
