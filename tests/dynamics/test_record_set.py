@@ -4,11 +4,14 @@ from collections import Counter
 
 import numpy as np
 import pytest
+import yaml
+from made_records import write_at2
 
 from blockshake.dynamics.intensity import motion_figures, response_spectrum
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.dynamics.record_set import DrawnMotions, is_record_set, read_records, record_files
 from blockshake.errors import InputError
+from blockshake.own_files.check import check
 
 CASE = {"baseline": "auto", "scale": 1.0}
 
@@ -153,3 +156,47 @@ def test_a_vertical_component_is_not_drawn_as_a_horizontal_one(folder):
     (folder / "up.AT2").write_text(f"{head}{sizes} 0.0 0.1 -0.1 0.0\n")
     with pytest.raises(InputError, match=r"up\.AT2: x: expected a horizontal component, found 'UP'"):
         list(drawn(folder).strongest())
+
+
+def test_records_of_one_set_begin_at_one_time_whatever_their_format(folder):
+    """An AT2 that does not end at rest starts behind a zero pad of 30 s; the CSV beside it rests as long."""
+    time = 0.01 * np.arange(1000)
+    write_at2(folder / "offset.AT2", 0.5 + np.sin(2.0 * np.pi * time), 0.01)
+    motions = list(drawn(folder).strongest())
+    assert [one.attributes["record_start"] for one in motions] == [30.0] * 4
+    for motion, record in zip(motions, read_records(folder), strict=True):
+        if record.name.endswith(".csv"):
+            own = load_motion(record.path)
+            at = np.linspace(0.0, own.duration, 50)
+            np.testing.assert_allclose(motion.evaluate(30.0 + at, 2), own.evaluate(at, 2), atol=1e-9)
+            assert not motion.evaluate(np.linspace(0.0, 29.9, 50), 2).any()
+    said = check(str(folder)).splitlines()
+    assert [line.partition(":")[0] for line in said if "a motion of" in line] == [
+        "offset.AT2", "record-0.csv", "record-1.csv", "record-2.csv",
+    ]  # fmt: skip
+    # without it nothing is moved
+    (folder / "offset.AT2").unlink()
+    for motion, record in zip(drawn(folder).strongest(), read_records(folder), strict=True):
+        np.testing.assert_array_equal(motion.table.breaks, load_motion(record.path).table.breaks)
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.5])
+def test_the_peak_that_check_prints_is_that_of_the_motion_as_used(scale, folder, tmp_path):
+    """Scaled, and corrected: not that of the file."""
+    time = 0.01 * np.arange(1000)
+    path = write_at2(tmp_path / "offset.AT2", 0.5 + np.sin(2.0 * np.pi * time), 0.01)
+    study = {
+        "name": "s", "description": "d", "models": {"nscd-rigid": {"time_step": 1e-3}},
+        "cases": [
+            {"name": name, "structure": "configuration-1", "motion": str(motion), "scale": scale, "duration": 31.0}
+            for name, motion in (("one", path), ("set", folder))
+        ],
+        "ensemble": {"size": 10, "seed": 1},
+    }  # fmt: skip
+    (tmp_path / "study.yaml").write_text(yaml.safe_dump(study))
+    said = check(tmp_path / "study.yaml")
+    used = motion_figures(load_motion(path, scale))["peak_acceleration"]
+    assert f"one: offset.AT2, PGA as used {used:.3g} m/s2 along x" in said
+    strongest = 3.0 * scale * np.sin(2.0 * np.pi * 2.0 * 0.12)  # of a sine of 2 Hz at steps of 10 ms
+    assert f"set: 3 records, PGA as used {scale:.3g} to {strongest:.3g} m/s2 along x" in said
+    assert abs(used / scale - 1.5) > 0.1  # m/s2, of the file

@@ -19,6 +19,7 @@ from blockshake.tables.units import unit_size
 from blockshake.validation import Positive, Strict
 
 _FILE, _FACTORS, _EVENT, _OTHERS = "file", ("scale", "level"), "event", ("y", "z")
+_BEGINS = "record_start"  # s, attribute of a corrected motion
 _NO_MOTIONS = (".json", ".md", ".pdf", ".vt2", ".dt2")  # what lies beside records in a folder
 
 
@@ -214,14 +215,24 @@ class DrawnMotions:
         return record._replace(level=levels[place] or record.level)
 
     def motion(self, record):
-        """`GroundMotion` of a record, at its level or with its scale, times that of the case."""
+        """`GroundMotion` of a record, at its level or with its scale, times that of the case.
+
+        All records of a set begin at one time: those without a zero pad, or with a shorter one, rest until then.
+        """
         motion, factor = self._read(record), record.scale
         if record.level is not None:
             own = self.intensity.of(motion)
             if own == 0.0:
                 raise InputError(record.path, "", "expected a motion along x, to be scaled to a level")
             factor = record.level / own
-        return scaled(motion, factor * self.scale, record.path)
+        return scaled(self._in_step(motion), factor * self.scale, record.path)
+
+    def _in_step(self, motion):
+        start = max(self._read(one).attributes.get(_BEGINS, 0.0) for one in self.records)
+        late = start - motion.attributes.get(_BEGINS, 0.0)
+        if late == 0.0:
+            return motion
+        return replace(motion.delayed(late), attributes={**motion.attributes, _BEGINS: start})
 
     def _read(self, record):
         key = record.path, self.baseline

@@ -9,7 +9,7 @@ import numpy as np
 from blockshake.diagnosis.nominal.plan import plan_diagnosis
 from blockshake.diagnosis.nominal.planned_test import planned_motion
 from blockshake.dynamics.baseline import AUTO
-from blockshake.dynamics.intensity import strong_until
+from blockshake.dynamics.intensity import motion_figures, strong_until
 from blockshake.dynamics.load_motion import load_motion, provenance
 from blockshake.dynamics.motion import GroundMotion
 from blockshake.dynamics.record_choice import mean_and_scatter
@@ -76,7 +76,8 @@ def check(source: AnyPath | Structure | GroundMotion, baseline: str | float = AU
         return _campaign_line(Path(source))
     if is_record_set(source):
         try:
-            return "\n".join(_motion_line(record.path, baseline) for record in read_records(source))
+            lines = (f"{one.name}: {_motion_line(one.path, baseline)}" for one in read_records(source))
+            return "\n".join(lines)
         except InputError as error:
             if not Path(source).is_dir():
                 raise
@@ -161,6 +162,7 @@ def _study_line(source):
         f"  {name}: {provenance(motion.attributes)}" for (name, _), motion in loaded.items() if name in used
     ]
     lines = [f"a study of {count_words(len(config.cases), 'case')} by {', '.join(models)}", *records]
+    lines += [_used_line(name, one, motions[name]) for name, one in drawn.items()]
     lines += [_choice_line(name, one) for name, one in drawn.items() if one.intensity.spectrum]
     remarks = [*_level_remarks(drawn), *_study_remarks(config, motions)]
     return _with_remarks(lines, remarks)
@@ -176,6 +178,15 @@ def _choice_line(case, drawn):
         f"  {case}: {len(drawn.records)} records are chosen, {names}; their median is within "
         f"{100 * np.expm1(np.abs(mean).max()):.2g} % of the target's at each period, their scatter within {off:.2g}"
     )
+
+
+def _used_line(case, drawn, motions):
+    """Peak acceleration of a case's motions as they are used: corrected and scaled, to the highest level."""
+    peaks = [motion_figures(motion)["peak_acceleration"] for motion in motions]
+    one = Path(drawn.records[0].path).name if len(motions) == 1 else count_words(len(motions), "record")
+    shown = " to ".join(dict.fromkeys(f"{peak:.3g}" for peak in (min(peaks), max(peaks))))
+    level = " at the highest level" if drawn.intensity.levels else ""
+    return f"  {case}: {one}, PGA as used{level} {shown} m/s2 along x"
 
 
 def _level_remarks(drawn):
