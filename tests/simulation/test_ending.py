@@ -5,7 +5,8 @@ import pytest
 import xarray as xr
 
 from blockshake.simulation.ending import ending
-from blockshake.simulation.rocking import columns
+from blockshake.simulation.rocking import columns, overhangs
+from blockshake.study.remarks import structure_remarks
 
 TIME = np.linspace(0.0, 1.0, 5)  # s
 LEAN = 0.03  # rad
@@ -66,3 +67,31 @@ def test_a_column_has_its_common_mass_centre_and_levers_to_both_sides(make_struc
     assert column.bodies.tolist() == [1, 2]
     assert column.height == pytest.approx(1.0, abs=1e-9)
     np.testing.assert_allclose(column.levers, [0.65, 0.35], atol=1e-9)
+
+
+@pytest.mark.parametrize(("off", "is_remarked"), [(0.2, False), (0.24, False), (0.26, True), (0.4, True)])
+def test_an_overhang_of_more_than_half_of_what_a_block_may_is_remarked(off, is_remarked, make_structure):
+    """A cube of 1 m on another may stand 0.5 m off, where its mass centre is over the edge."""
+    structure = make_structure([
+        {"name": "lower", "shape": "cube", "position": [0.0, 0.0, 0.5]},
+        {"name": "upper", "shape": "cube", "position": [0.0, off, 1.5]},
+    ])  # fmt: skip
+    assert overhangs(structure) == {2: pytest.approx(off / 0.5, abs=1e-9)}
+    said = [remark for remark in structure_remarks(structure) if "overhangs" in remark]
+    assert said == (
+        [f"upper overhangs its support by {off / 0.5:.0%} of what it may alone"] if is_remarked else []
+    )
+
+
+def test_a_capital_that_overhangs_to_both_sides_and_a_lintel_have_no_overhang(make_structure):
+    shapes = {"shaft": {"box": [0.4, 0.4, 1.0]}, "lintel": {"box": [3.0, 1.0, 0.5]}}
+    capital = make_structure([
+        {"name": "shaft", "shape": "shaft", "position": [0.0, 0.0, 0.5]},
+        {"name": "capital", "shape": "cube", "position": [0.0, 0.0, 1.5]},
+    ], shapes=shapes)  # fmt: skip
+    lintel = make_structure([
+        {"name": "left", "shape": "cube", "position": [-1.0, 0.0, 0.5]},
+        {"name": "right", "shape": "cube", "position": [1.0, 0.0, 0.5]},
+        {"name": "lintel", "shape": "lintel", "position": [0.0, 0.0, 1.25]},
+    ], shapes=shapes)  # fmt: skip
+    assert overhangs(capital) == overhangs(lintel) == {}

@@ -14,6 +14,7 @@ from blockshake.measurement.motion.joints import contact_normals, find_joints, j
 _NEAREST, _FARTHEST = 0.005, 0.03
 _FEWEST_ROWS = 3  # rows on either side
 _SAME_HEIGHT = 1e-3  # m, of joints beside each other
+_AS_FAR = 0.8  # of the lever to the other side
 _LEAST_SPIN = 0.05  # rad/s: slower closings are elastic
 
 
@@ -72,6 +73,31 @@ def columns(structure):
             bodies, centre, centre[2] - centres[feet, 2].mean(), levers
         )
     return list(found.values())
+
+
+def overhangs(structure):
+    """By index of a free body that stands to one side of its support: the share of the overhang that it may have alone.
+
+    1 where its mass centre is over the edge of what it stands on, along x or along y; 0 where it overhangs nothing. A
+    body whose joints are not all up, or that overhangs about as far on the other side, is none of them.
+    """
+    pairs, _ = find_joints(structure)
+    normals = contact_normals(structure, pairs)
+    start = rotation_matrices(structure.orientation)
+    low, high = (one[0] for one in _reach(structure, structure.position[None], start[None]))
+    found = {}
+    for body in np.flatnonzero(~structure.driven):
+        feet = np.flatnonzero(pairs[:, 1] == body)
+        if not len(feet) or (normals[feet, 2] < COSINE_OF_TILT).any():
+            continue
+        half = 0.5 * np.ptp(structure.solid(body).vertices @ start[body].T, axis=0)[:2]
+        centre = structure.position[body, :2]
+        levers = np.sort([centre - low[feet].min(axis=0), high[feet].max(axis=0) - centre], axis=0)
+        one_sided = levers[0] < _AS_FAR * levers[1]
+        share = np.where(one_sided, 1.0 - levers[0] / half, 0.0).max()
+        if share > 0.0:
+            found[int(body)] = float(share)
+    return found
 
 
 def overturning_margins(structure, position, turns):

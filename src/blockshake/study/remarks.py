@@ -15,7 +15,7 @@ from blockshake.geometry.structure_file import point_remarks
 from blockshake.pages.wording import count_words
 from blockshake.quantities import PHYSICAL, USUAL
 from blockshake.simulation.parameter_table import instances
-from blockshake.simulation.rocking import columns
+from blockshake.simulation.rocking import columns, overhangs
 
 _FAR = 1e4  # m, from the origin: with some digits of forces lost, docs/guide/contracts.md
 # m, of the longest edge; no block of a structure or of a model test is beyond
@@ -27,6 +27,7 @@ _STEEPEST = 0.05  # rad, of a table
 _FASTEST_END = 0.05  # m/s
 _LONGEST = 600.0  # s, of a test or of an earthquake
 _SHORTEST = 0.1  # s
+_OVERHANG = 0.5  # of that at which the mass centre is over the edge
 # by kind of motion: its unit, and smaller ones that are perhaps meant
 _UNITS = {"acceleration": "m/s2", "velocity": "m/s", "displacement": "m"}
 _SMALLER = {"acceleration": "cm/s2 or mm/s2", "velocity": "cm/s or mm/s", "displacement": "mm"}
@@ -115,6 +116,11 @@ def structure_remarks(structure):
             f"the blocks stand {farthest:.3g} m from the origin, where places have steps of {np.spacing(farthest):.1g} "
             "m: a local origin in whole metres keeps more digits"
         )
+    for body, share in overhangs(structure).items():
+        if share > _OVERHANG:
+            remarks.append(
+                f"{structure.body_names[body]} overhangs its support by {share:.0%} of what it may alone"
+            )
     held = _held_up(structure)
     for body in np.flatnonzero(~held):
         remarks.append(

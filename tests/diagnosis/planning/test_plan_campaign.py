@@ -82,3 +82,12 @@ def test_bad_input_is_one_line(tmp_path, motions, sensors, words):
     with pytest.raises(InputError, match=words) as error:
         load_asked(STRUCTURE, motions, file)
     assert "\n" not in str(error.value)
+
+
+def test_no_measurement_more_takes_chances_away():
+    """Another draw of the noise may tell a pair less surely: the measurement then adds nothing to it."""
+    before = {("a", "b"): 0.6, ("a", None): 0.9}
+    after = {("a", "b"): 0.4, ("a", None): 0.95, ("c", None): 0.2}
+    assert plan.gained_chances(before, after) == {
+        ("a", "b"): 0.0, ("a", None): pytest.approx(0.05), ("c", None): 0.2,
+    }  # fmt: skip

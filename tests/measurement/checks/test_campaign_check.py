@@ -12,7 +12,7 @@ from blockshake.dynamics.motion import ground_motion
 from blockshake.dynamics.records.contract_csv import write_motion_csv
 from blockshake.errors import InputError
 from blockshake.files import file_digest
-from blockshake.measurement.checks.campaign_check import campaign_lines
+from blockshake.measurement.checks.campaign_check import campaign_lines, multiples
 
 SHARED = Path(os.environ.get("BLOCKSHAKE_SHARED", Path(__file__).parents[4] / "shared"))
 BLOCKS = [place for place, name in enumerate(MARKERS) if not name.startswith("slab")]
@@ -64,6 +64,27 @@ def test_a_column_that_is_a_multiple_of_another_is_remarked(ratio, tmp_path):
 
     name, other = MARKERS[BLOCKS[-1]], MARKERS[BLOCKS[0]]
     assert any(f"{name}.y is {other}.y times {ratio:g}" in line for line in _lines(tmp_path, spoil))
+
+
+@pytest.mark.parametrize("ratio", [0.5, -3.0])
+def test_a_channel_that_is_a_multiple_of_another_is_remarked(ratio, tmp_path):
+    def spoil(test):
+        noise = np.random.default_rng(1).normal(0.0, 0.02, test["accelerometer"].shape)
+        test["accelerometer"][:] = test["accelerometer"] + noise
+        test["accelerometer"][:, 1] = ratio * test["accelerometer"][:, 0]
+
+    first, second = resting_stack()["channel"].values[:2]
+    assert any(f"{second} is {first} times {ratio:g}" in line for line in _lines(tmp_path, spoil))
+
+
+def test_a_wire_that_is_a_multiple_of_another_is_remarked_and_a_gap_and_a_copy_are_not():
+    """Copies have a remark of their own; of a wire with gaps nothing is said."""
+    wires = np.random.default_rng(2).normal(0.0, 1e-3, (500, 4))
+    wires[:, 1], wires[:, 2], wires[5, 3] = 2.5 * wires[:, 0], wires[:, 0], np.nan
+    assert multiples(["w1", "w2", "w3", "w4"], wires) == [
+        "w2 is w1 times 2.5: one column mapped twice?",
+        "w3 is w2 times 0.4: one column mapped twice?",
+    ]
 
 
 def test_a_marker_that_no_test_reads_and_a_weak_table_are_remarked(tmp_path):

@@ -74,7 +74,7 @@ def plan_of(asked, progress):
     before, additions = _of_visible(few, told), []
 
     def add(words, after):
-        gained = {pair: chance - before.get(pair, 0.0) for pair, chance in after.items()}
+        gained = gained_chances(before, after)
         most = sorted((pair for pair in gained if gained[pair] > _SEPARATED), key=lambda pair: -gained[pair])
         additions.append(Addition(words, sum(gained.values()), tuple(most)))
 
@@ -91,6 +91,11 @@ def plan_of(asked, progress):
         longer = [_campaign(asked, {**one, words: test}) for one, test in zip(readings, more, strict=True)]
         add(words, _of_visible(longer, told))
     return told, sorted(additions, key=lambda one: (-one.pairs, one.words))
+
+
+def gained_chances(before, after):
+    """Chance more of every pair by a measurement, never below zero: who measures more may leave it out [1]."""
+    return {pair: max(0.0, chance - before.get(pair, 0.0)) for pair, chance in after.items()}
 
 
 def _campaign(asked, readings, more=frozenset()):

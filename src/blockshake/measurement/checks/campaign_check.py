@@ -175,7 +175,9 @@ class _Described:
                 f"marker noise {1e3 * usual:.3g} mm in the quiet {1e3 * (quiet_end - self.time[0]):.3g} ms"
             )
             self.remarks += displacement_remarks("marker", names, noise, stated)
-            self.remarks += _multiples(names, self.readings) if usual > 0.0 else []
+            columns = [f"{name}.{axis}" for name in names for axis in AXES]
+            read = self.readings.reshape(len(self.readings), -1)
+            self.remarks += multiples(columns, read) if usual > 0.0 else []
             self._hold_start(quiet)
         else:
             self.facts.append("no quiet start to find the noise in")
@@ -188,6 +190,7 @@ class _Described:
             noise = marker_noise(read.to_numpy()[quiet.to_numpy(), :, None])
             check_unit(names, noise, stated, self.path)
             self.remarks += displacement_remarks("displacement transducer", names, noise, stated)
+            self.remarks += multiples(names, read.to_numpy())
         if "accelerometer" in self.test:
             fast, whole = accelerometer_noise(self.test["accelerometer"].to_numpy()[quiet.to_numpy()])
             if np.isfinite(fast).any():
@@ -195,6 +198,8 @@ class _Described:
             self.remarks += accelerometer_remarks(
                 self.test["channel"].values, fast, whole, self.sensors.accelerometer_noise
             )
+            read = self.test["accelerometer"].transpose("time_acc", "channel").to_numpy()
+            self.remarks += multiples(self.test["channel"].values, read) if (fast > 0.0).all() else []
 
     def _hold_start(self, quiet):
         start = np.abs(mean_read(self.readings[quiet][:_AT_START].swapaxes(0, 1)))
@@ -247,11 +252,9 @@ class _Described:
             self.remarks += clock_remarks(self.time, slab, time_acc, readings, self.slab_noise, self.path)
 
 
-def _multiples(names, readings):
-    """Remarks on columns (n_times, n_markers, 3) that are another's multiple, noise and all."""
-    columns = [f"{name}.{axis}" for name in names for axis in AXES]
-    values = readings.reshape(len(readings), -1)
-    values = values - values.mean(axis=0)
+def multiples(columns, readings):
+    """Remarks on readings (n_times, n_columns) that are another's multiple, noise and all; ``columns``: their names."""
+    values = readings - readings.mean(axis=0)
     size = np.sqrt((values**2).sum(axis=0))
     whole = np.flatnonzero(size > 0.0)  # without gaps too
     units = values[:, whole] / size[whole]
