@@ -4,28 +4,24 @@ The oracle's model has the true causes in their own form and size, and nothing e
 to gain by naming them. Both are measured against the nominal model with the same draws, of one solver.
 """
 
-from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
-import numpy as np
 from effect_forms import FORMS
 from outside_forces import OUTSIDE
 
 from blockshake.diagnosis.gain.extended_model import Extension, can_extend
-from blockshake.diagnosis.gain.response_gain import response_gain
+from blockshake.diagnosis.gain.response_gain import gain_over_nominal, select_gain
 from blockshake.diagnosis.misfit.judged_test import judged_test, measured_histories
 from blockshake.diagnosis.nominal.ensemble import (
     EXTENDED,
     NOMINAL,
-    RECALIBRATED,
     Member,
     nominal_members,
     simulate_members,
 )
 from blockshake.diagnosis.nominal.nominal_model import draw_nominal
 from blockshake.diagnosis.nominal.planned_test import planned_sealed, planned_test
-from blockshake.diagnosis.verdict.verdict import Contrast
+from blockshake.diagnosis.verdict.verdict import Contrast, MeasuredGain
 from blockshake.effects.registry import with_effect
 from blockshake.files import content_digest, load_json, write_json
 from blockshake.geometry.structure import load_structure
@@ -36,20 +32,20 @@ from blockshake.validation import Strict, validated
 
 MODEL, DRAWS, TWINS = "nscd-rigid", 8, 3
 ABLE = 0.3  # gain of the oracle from which on a share of it is counted
-_ORACLE = "oracle"
+ORACLE = "oracle"
 
 
 class ResponseGains(Strict):
     """The file ``gains.json`` of a case; a gain is None where nothing is there to gain within the draws' scatter."""
 
-    proposed: bool  # the verdict proposes an extension
+    proposed: bool  # the verdict has an extension, and it gains on the tests to select by
     found: Contrast | None  # gain of that extension over the nominal model
     oracle: Contrast | None  # gain of the true causes
 
     @property
     def idle(self):
         """Whether the oracle gains nothing: the causes are there and change no prediction."""
-        return self.oracle is None or self.oracle.lower <= 0.0
+        return self.oracle is None or not self.oracle.gains
 
     @property
     def share(self):
@@ -64,7 +60,7 @@ class TrueCauses:
 
     def __init__(self, truth, number):
         self.truth, self.number = truth, number
-        self.digest = content_digest(_ORACLE, truth["causes"], truth["laboratory"], number)
+        self.digest = content_digest(ORACLE, truth["causes"], truth["laboratory"], number)
 
     def __call__(self, experiment):
         """The experiment with the causes in it; MuJoCo's laboratory has the registry's own forms."""
@@ -89,55 +85,64 @@ def response_gains(folder, truth, verdict, findings, store):
         Of the campaign.
     truth : dict
     verdict : Verdict
-        Its ``extension`` is what is proposed.
+        Its ``extension`` is what is proposed, unless it gains nothing on the tests to select by.
     findings : sequence of Finding
         Faults of sensors that were found, which are taken out of the readings.
     store : str or path
         Folder of finished runs.
     """
     campaign = load_campaign(folder)
-    structure = load_structure(campaign.structure)
     causes = tuple(cause for cause in verdict.extension if can_extend(cause))
+    numbers = {name: number for number, name in enumerate(truth["tests"])}
+    changes = {ORACLE: lambda name, draw: TrueCauses(truth, numbers[name])}
+    found = {EXTENDED: lambda name, draw: Extension(causes, draw, name)} if causes else {}
+    select = [name for name, test in campaign.open.items() if test.role == "select"] if causes else []
+    selected = select_gain(tests_of_models(campaign, select, found, findings, store))
+    if not MeasuredGain(select=selected).proposes:
+        found = {}
+    tests = tests_of_models(campaign, campaign.sealed, changes | found, findings, store)
+    return ResponseGains(
+        proposed=bool(found),
+        found=gain_over_nominal(tests) if found else None,
+        oracle=gain_over_nominal(tests, ORACLE),
+    )
+
+
+def tests_of_models(campaign, names, changes, findings, store):
+    """`JudgedTest` of some tests of a campaign, with the nominal model and its changes.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    names : iterable of str
+    changes : dict of str to callable
+        By model: the change of an `Experiment`, with its digest, in a test of a name by the draw of a number.
+    findings : sequence of Finding
+        Taken out of the readings.
+    store : str or path
+        Folder of finished runs.
+    """
+    structure = load_structure(campaign.structure)
     opened = {name: planned_test(campaign, name, structure) for name in campaign.open}
-    measured = measured_histories(campaign, list(campaign.sealed), findings)
+    measured = measured_histories(campaign, list(names), findings)
     draws = [draw_nominal(structure, MODEL, number) for number in range(DRAWS)]
     runs_kept = Store(str(store), source_digest(*script_sources("simulate_nominal", MODEL)), _silent)
     tests = []
-    for name in campaign.sealed:
-        planned = planned_sealed(campaign, name, opened, structure)
-        hidden = TrueCauses(truth, list(truth["tests"]).index(name))
+    for name in names:
+        planned = opened[name] if name in opened else planned_sealed(campaign, name, opened, structure)
         members = nominal_members(name, planned, MODEL, DRAWS, TWINS)
-        members += [Member(_ORACLE, k, name, planned, draw, hidden) for k, draw in enumerate(draws)]
-        if causes:
-            found = partial(Extension, causes, test=name)
-            members += [
-                Member(EXTENDED, k, name, planned, draw, found(number=k)) for k, draw in enumerate(draws)
-            ]
-        kinds = (NOMINAL, _ORACLE, *([EXTENDED] if causes else []))
-        tests.append(judged_test(name, measured[name], [simulate_members(members, runs_kept)], kinds))
-    return ResponseGains(
-        proposed=bool(causes), found=_gain(tests, EXTENDED) if causes else None, oracle=_gain(tests, _ORACLE)
-    )
+        members += [
+            Member(kind, k, name, planned, draw, change(name, k))
+            for kind, change in changes.items()
+            for k, draw in enumerate(draws)
+        ]
+        ensemble = simulate_members(members, runs_kept)
+        tests.append(judged_test(name, measured[name], [ensemble], (NOMINAL, *changes)))
+    return tests
 
 
 def _silent(line):
     """No line of a run."""
-
-
-def _gain(tests, kind):
-    """Gain of the members of a kind over the nominal ones; None where these score within noise."""
-    held = [
-        replace(test, members={
-            NOMINAL: test.members[NOMINAL], RECALIBRATED: test.members[NOMINAL], EXTENDED: test.members[kind],
-        })
-        for test in tests
-        if test.judged.any()
-    ]  # fmt: skip
-    if not held:
-        return None
-    gained = response_gain(held).sel(rival=NOMINAL)
-    estimate, lower, upper = (float(gained[name]) for name in ("gain", "gain_lower", "gain_upper"))
-    return None if np.isnan(estimate) else Contrast.cut_off(estimate, lower, upper)
 
 
 def gains_of(results, name):

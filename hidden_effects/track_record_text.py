@@ -69,6 +69,11 @@ def in_words(record):
                 f"A proposed extension gains {median.estimate:.2f} of what the true cause would gain, in the median of "
                 f"{median.n} cases (goal {_goal(median)})."
             )
+    idle = record.shares["gain_idle"]
+    if idle.hits:
+        sentences.append(
+            f"In {hits(idle)} cases even the true cause gains nothing: the cause is there and changes no prediction."
+        )
     sentences.append(
         "The [track record](docs/results/hidden-effects.md) holds all figures with their misses, and every report "
         "prints those of the worst laboratory."
@@ -125,7 +130,10 @@ def _gains(record):
         found = _gain(case.found) if case.proposed else "not proposed"
         words = ", ".join([case.truth, *([case.size] if case.size else [])])
         rows = "" if case.rows is None else _gain(case.rows)
-        yield f"| {words} | {case.laboratory} | {case.answer} | {rows} | {found} | {_gain(case.oracle)} |"
+        oracle = _gain(case.oracle)
+        if case.oracle is None or not case.oracle.gains:
+            oracle += ", the cause changes no prediction"
+        yield f"| {words} | {case.laboratory} | {case.answer} | {rows} | {found} | {oracle} |"
 
 
 def _gain(contrast):

@@ -202,6 +202,7 @@ MASS = made_up_cause("block-mass", {"body": "block-2", "height": 0.0}, members=m
     [
         ((), {"decision": "none", "causes": (), "word": "no misfit larger than chance"},
          "verdict.json: extension: expected a cause that acts in blocks, joints or forces and lasts; its word is: no"),
+        ((), {"word": "probable", "missing": ("it is not proposed",)}, "its word is: probable; it is not proposed"),
         ((PITCH,), {}, "verdict.json: extension: expected a cause that acts in blocks, joints or forces and lasts; "
          "found table-pitch"),
         ((BLOW,), {}, "found blow"),

@@ -1,11 +1,14 @@
 """Gain in worlds whose truth is known: the extended model, the nominal one, or another effect."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from fair_score import crps
 from judged_tests import CELLS, TIME, judged
 
-from blockshake.diagnosis.gain.response_gain import gain_of_verdict, response_gain
+from blockshake.diagnosis.gain.response_gain import gain_of_verdict, response_gain, select_gain
+from blockshake.diagnosis.verdict.verdict import NOTHING_TO_GAIN, MeasuredGain
 
 COUNT = 24
 
@@ -87,6 +90,23 @@ def test_without_an_effect_nothing_is_there_to_gain():
     # 1 in 20 records scores above 95 % of its own like: with 4 standard errors of 24
     assert np.isfinite(gains).mean() < 0.05 + 4.0 * np.sqrt(0.05 * 0.95 / 24)
     assert np.median(verdicts) == 0.0
+
+
+def test_tests_to_select_by_tell_a_model_that_predicts_from_one_that_does_not():
+    """The right effect is proposed; another one, one that changes no prediction, and one unseen are not measured so."""
+    world = World(9, 1)
+    truth = 4.0 * world.right
+    right, wrong = (world.sealed(truth, one) for one in (truth, 4.0 * world.wrong))
+    assert select_gain(right).gains
+    assert not select_gain(wrong).gains
+    assert MeasuredGain(select=select_gain(right)).proposes
+    assert not MeasuredGain(select=select_gain(wrong)).proposes
+    still = [replace(test, horizon=np.full(len(CELLS), -np.inf)) for test in right]
+    assert select_gain(still) is select_gain([]) is None
+    assert MeasuredGain().proposes
+    # seed 3 of a record that does not score above its own like
+    idle = World(3, 1)
+    assert select_gain(idle.sealed(0.0 * idle.right, 0.1 * idle.right)) == NOTHING_TO_GAIN
 
 
 def test_an_extension_that_adds_nothing_gains_nothing():

@@ -1,4 +1,5 @@
 import shutil
+from dataclasses import replace
 
 import pytest
 
@@ -22,6 +23,10 @@ def test_strongest_of_each_motion_then_by_falling_scale():
     assert simulated_tests(campaign, names, 2) == ["alkion-275", "basso-tirreno-275"]
     assert simulated_tests(campaign, names, 3) == ["alkion-200", "alkion-275", "basso-tirreno-275"]
     assert simulated_tests(campaign, names, 99) == names
+    weak = replace(campaign, tests={
+        **campaign.tests, names[0]: campaign.tests[names[0]].model_copy(update={"role": "select"}),
+    })  # fmt: skip
+    assert names[0] in simulated_tests(weak, names, 2)
 
 
 def test_quick_effort_simulates_nothing():

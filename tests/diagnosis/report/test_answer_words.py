@@ -5,6 +5,7 @@ import pytest
 from fake_findings import ECCENTRIC, KINDS, part
 
 from blockshake.diagnosis.answer.decision import Cause, Estimate, Measurement, Part
+from blockshake.diagnosis.gain.section import effect_section
 from blockshake.diagnosis.report.answer_section import next_tests_table, percent_words
 from blockshake.diagnosis.report.statement import not_told, statement, until_then
 from blockshake.diagnosis.verdict.verdict import Contrast
@@ -74,6 +75,10 @@ def test_until_then_is_the_largest_upper_limit_of_the_drift_of_all_sealed_tests(
     assert f"({worst})" in said
     assert "no factor is known" in until_then(replace(one, gain=None))
     assert "nominal model as it is" in until_then(found["none"])
+    idle = replace(one, verdict=one.verdict.model_copy(update={"extension": ()}))
+    assert "gains nothing on the tests to select by" in until_then(idle)
+    assert effect_section(one) is not None
+    assert effect_section(idle) is None
 
 
 def test_every_part_of_a_combination_has_its_own_sentence(found):

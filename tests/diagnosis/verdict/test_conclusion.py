@@ -7,6 +7,7 @@ from made_up_decision import made_up_decision, made_up_part
 from blockshake.diagnosis.answer.decide import kind_of
 from blockshake.diagnosis.answer.decision import Measurement
 from blockshake.diagnosis.verdict.conclusion import conclude
+from blockshake.diagnosis.verdict.verdict import Contrast, MeasuredGain
 from blockshake.effects.registry import EFFECTS
 from blockshake.parity.finding import Finding
 
@@ -35,6 +36,16 @@ def test_a_name_has_its_parameter_and_its_rivals():
     assert (verdict.odds, verdict.places) == ({"table-pitch": 0.0}, {"table-pitch": ("there",)})
     assert (verdict.excluded_above, verdict.location) == ({}, {})
     assert verdict.next_test == EFFECTS["table-pitch"].told_apart_by
+
+
+@pytest.mark.parametrize(("lower", "proposed"), [(0.1, True), (0.0, False), (-0.4, False), (None, True)])
+def test_a_cause_that_gains_nothing_on_the_tests_to_select_by_is_named_and_not_proposed(lower, proposed):
+    select = None if lower is None else Contrast(estimate=0.3, lower=lower, upper=0.5)
+    decision = made_up_decision("named", ("weak-joint",))
+    verdict = conclude(decision, (), KINDS, measured=MeasuredGain(select=select))
+    assert (verdict.decision, verdict.causes) == ("named", ("weak-joint",))
+    assert verdict.extension == (decision.extending if proposed else ())
+    assert any("is not proposed" in reason for reason in verdict.missing) != proposed
 
 
 def test_a_joint_is_the_location():

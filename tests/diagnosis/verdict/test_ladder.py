@@ -4,7 +4,7 @@ import pytest
 from made_up_decision import made_up_decision
 
 from blockshake.diagnosis.verdict.ladder import ESTABLISHED, NOTHING, ONE_OF, PROBABLE, UNKNOWN, rung
-from blockshake.diagnosis.verdict.verdict import Contrast, Gain, MeasuredGain
+from blockshake.diagnosis.verdict.verdict import NOTHING_TO_GAIN, Contrast, Gain, MeasuredGain
 
 NAMED = made_up_decision("named", ("table-pitch",))
 GAINED = Contrast(estimate=0.5, lower=0.2, upper=0.8)
@@ -33,6 +33,7 @@ def test_a_cause_that_lacks_nothing_is_established():
         ({"measured": MEASURED.model_copy(update={"rows": None})}, "forces"),
         (_with("rows", "recalibrated", lower=-0.1), "nothing or a loss"),
         (_with("gain", "discrepancy", estimate=-0.2), "without a name"),
+        ({"measured": MEASURED.model_copy(update={"select": NOTHING_TO_GAIN})}, "not proposed"),
     ],
 )
 def test_established_asks_for_all_of_the_ladder(change, reason):

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from scipy.special import ndtri
 
-from blockshake.diagnosis.gain.response_gain import gain_of_verdict, response_gain
+from blockshake.diagnosis.gain.response_gain import gain_of_verdict, response_gain, select_gain
 from blockshake.diagnosis.misfit.judged_test import judged_test
 from blockshake.diagnosis.nominal.ensemble import (
     DISCREPANCY,
@@ -18,11 +18,14 @@ from blockshake.diagnosis.nominal.ensemble import (
     runs_of,
 )
 from blockshake.diagnosis.verdict.verdict import MeasuredGain
+from blockshake.diagnosis.wording import percent_words
 from blockshake.dynamics.system import FALLEN, FINISHED
+from blockshake.pages.wording import listed
 from blockshake.statistics.resampling import resampled_weights
 from blockshake.study.extension.changes import quantities
 
 _STILL = "no gain was measured on the responses: no joint moves in the sealed tests"
+_IDLE = "the model with the cause is not proposed: of the error on the responses of {}, to select by, it removes {}"
 
 
 class CampaignGain(NamedTuple):
@@ -60,14 +63,31 @@ def campaign_gain(plan, opened, sealed, nominal, runs):
         test = judged_test(name, histories, [runs_of(solver_runs, test=name) for solver_runs in runs], kinds)
         drawn = test.members[NOMINAL].copy(data=members_with_discrepancy(test, known, motions, peaks))
         tests.append(replace(test, members=test.members | {DISCREPANCY: drawn}))
+    select, unproposed = _selected(plan, opened, runs)
     count = plan.runs + sum(int(solver_runs.attrs["simulated"]) for solver_runs in runs)
     tests = [test for test in tests if test.judged.any()]
     if not tests:
-        return CampaignGain(MeasuredGain(gain=None, caveats=[_STILL], runs=count), xr.Dataset())
+        return CampaignGain(
+            MeasuredGain(select=select, caveats=[*unproposed, _STILL], runs=count), xr.Dataset()
+        )
     names = [test.name for test in tests]
     effects = xr.concat([_effect(name, runs, sealed[name]) for name in names], dim=xr.Variable("test", names))
     scores = response_gain(tests).merge(effects)
-    return CampaignGain(gain_of_verdict(scores, count), scores)
+    measured = gain_of_verdict(scores, count)
+    caveats = (*unproposed, *measured.caveats)
+    return CampaignGain(measured.model_copy(update={"select": select, "caveats": caveats}), scores)
+
+
+def _selected(plan, opened, runs):
+    """Gain on the open tests to select by, None without any, and caveats: whether the model is not proposed."""
+    judged = [
+        judged_test(name, opened[name], [runs_of(one, test=name) for one in runs], (NOMINAL, EXTENDED))
+        for name in plan.selecting
+    ]
+    gain = select_gain(judged)
+    if MeasuredGain(select=gain).proposes:
+        return gain, []
+    return gain, [_IDLE.format(listed(plan.selecting), percent_words(gain))]
 
 
 def _effect(name, runs, measured):

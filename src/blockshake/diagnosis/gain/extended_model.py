@@ -11,7 +11,6 @@ from blockshake.diagnosis.nominal.ensemble import (
     NOMINAL,
     PLACEBO,
     RECALIBRATED,
-    TWIN,
     Member,
     nominal_members,
     simulate_members,
@@ -98,8 +97,8 @@ def extended_runs(plan, model, causes, nominal, measured, store):
     Returns
     -------
     xarray.Dataset
-        As from `simulate_members`, with twins. Attribute ``simulated``: number of tests, the open ones with the cause
-        among them.
+        As from `simulate_members`, with twins; of the open tests to select by the nominal and the extended members, not
+        conditioned. Attribute ``simulated``: number of tests, the open ones with the cause among them.
 
     Notes
     -----
@@ -110,7 +109,9 @@ def extended_runs(plan, model, causes, nominal, measured, store):
     structure = next(iter(plan.tests.values())).structure
     draws = [draw_nominal(structure, model, number) for number in range(plan.effort.draws)]
     ensembles = {
-        test: _beside_twins(_members(EXTENDED, test, planned, draws, causes), nominal[test], store)
+        test: _beside(
+            [simulate_members(_members(EXTENDED, test, planned, draws, causes), store), nominal[test]]
+        )
         for test, planned in plan.tests.items()
     }
     extended = _conditioned(draws, ensembles, measured, EXTENDED)
@@ -126,7 +127,7 @@ def extended_runs(plan, model, causes, nominal, measured, store):
         members += nominal_members(test, planned, model, count, plan.effort.twins)
         for kind, (conditioned, acting) in drawn.items():
             members += _members(kind, test, planned, conditioned[:count], acting)
-    runs = simulate_members(members, store)
+    runs = _beside([simulate_members(members, store), *(ensembles[test] for test in plan.selecting)])
     return runs.assign_attrs(simulated=len(members) + len(plan.tests) * plan.effort.draws)
 
 
@@ -137,12 +138,10 @@ def _members(kind, test, planned, draws, causes):
     ]
 
 
-def _beside_twins(members, nominal, store):
-    """Ensemble of members of an open test, with the twins of its nominal ensemble."""
-    twins = nominal.isel(run=nominal["kind"].to_numpy() == TWIN)
-    runs = [simulate_members(members, store), twins]
+def _beside(ensembles):
+    """Runs of several ensembles of one solver, one after the other."""
     return xr.concat(
-        runs, dim="run", join="outer", coords="minimal", compat="override", combine_attrs="override"
+        ensembles, dim="run", join="outer", coords="minimal", compat="override", combine_attrs="override"
     )
 
 

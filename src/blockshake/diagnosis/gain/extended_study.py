@@ -152,7 +152,11 @@ def _causes(found, verdict):
     others = [cause.name for cause in found.extension if not _can_state(cause)]
     if not held:
         expected = "expected a cause that acts in blocks, joints or forces and lasts"
-        what = f"found {', '.join(others)}" if others else f"its word is: {found.word}"
+        what = (
+            f"found {', '.join(others)}"
+            if others
+            else f"its word is: {'; '.join([found.word, *found.missing])}"
+        )
         raise InputError(verdict, "extension", f"{expected}; {what}")
     lines = [f"{name} is left out: no structure file can state it" for name in others]
     if found.decision == "ambiguous":

@@ -1,6 +1,6 @@
 """Gain on the responses of sealed tests: the share of a rival's error that the extended model removes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -99,6 +99,36 @@ def response_gain(tests):
     )
     shown = xr.concat([test.bands() for test in tests], dim="test", join="outer")
     return scores.merge(shown.assign_coords(test=[test.name for test in tests]))
+
+
+def gain_over_nominal(tests, kind=EXTENDED):
+    """`Contrast` of the members of a kind over the nominal ones on tests; None where these score within noise.
+
+    Parameters
+    ----------
+    tests : list of JudgedTest
+        With both kinds.
+    kind : str
+    """
+    held = [
+        replace(test, members={
+            NOMINAL: test.members[NOMINAL], RECALIBRATED: test.members[NOMINAL], EXTENDED: test.members[kind],
+        })
+        for test in tests
+        if test.judged.any()
+    ]  # fmt: skip
+    if not held:
+        return None
+    gained = response_gain(held).sel(rival=NOMINAL)
+    estimate, lower, upper = (float(gained[name]) for name in ("gain", "gain_lower", "gain_upper"))
+    return None if np.isnan(estimate) else Contrast.cut_off(estimate, lower, upper)
+
+
+def select_gain(tests):
+    """Gain over the nominal model on the tests to select by; None without any, or where nothing moves in them."""
+    if not any(test.judged.any() for test in tests):
+        return None
+    return gain_over_nominal(tests) or NOTHING_TO_GAIN
 
 
 def gain_of_verdict(gained, runs):

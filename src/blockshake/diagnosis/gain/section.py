@@ -19,7 +19,11 @@ _RIVALS = {
     "placebo": "the same cause at another place",
 }
 _MOST_TESTS = 3
-OF_GAIN = ("gain was measured", "nothing to gain")  # by which caveats on the gain are known
+OF_GAIN = (
+    "gain was measured",
+    "nothing to gain",
+    "is not proposed",
+)  # by which caveats on the gain are known
 # drift by these kinds of members, with their titles and colours
 _SHOWN = {
     "nominal": ("without the cause", GREY),
@@ -54,8 +58,6 @@ def gain_section(diagnosed):
     ]
     if gain is not None and "where" in gain.attrs:
         blocks.append(_of_sensor(gain))
-    elif gain is not None:
-        blocks.append(_drift(diagnosed))
     return Section(title, "gain", tuple(blocks))
 
 
@@ -80,7 +82,10 @@ def _gains(verdict):
     )
 
 
-def _drift(diagnosed):
+def drift_figure(diagnosed):
+    """Figure of the sealed tests before and after the cause is in the model; None where no model was extended."""
+    if diagnosed.gain is None or "band" not in diagnosed.gain:
+        return None
     tests = [str(name) for name in diagnosed.gain["test"].values][:_MOST_TESTS]
     return Figure(
         "Drift of the top against the table on sealed tests, without and with the cause: 5 to 95 % and median of the "
@@ -114,9 +119,9 @@ def _of_sensor(scores):
 
 
 def effect_section(diagnosed):
-    """Changes that the cause makes in the sealed tests, for whoever must decide; None where no model was extended."""
+    """Changes that the cause makes in the sealed tests, for whoever must decide; None where no model is proposed."""
     gain = diagnosed.gain
-    if gain is None or "largest" not in gain:
+    if gain is None or "largest" not in gain or not diagnosed.verdict.extension:
         return None
     cause = listed([one.title for one in acting_causes(diagnosed.decision)])
     effect = gain[["value", "value_interval", "paired", "largest"]].rename(response="quantity")

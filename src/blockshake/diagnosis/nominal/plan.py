@@ -84,6 +84,11 @@ class Plan:
         names = self.campaign.sealed if self.simulated else ()
         return {name: planned_sealed(self.campaign, name, self.tests, self._structure) for name in names}
 
+    @property
+    def selecting(self):
+        """Names of the simulated tests to select by."""
+        return [name for name in self.simulated if self.campaign.tests[name].role == "select"]
+
     @cached_property
     def _structure(self):
         return load_structure(self.campaign.structure)
@@ -133,13 +138,15 @@ def open_tests(campaign):
 def simulated_tests(campaign, names, most):
     """Those of the open tests that are simulated, in the campaign's order.
 
-    The strongest of each motion, then the others by falling scale: where nothing moves, nothing is told.
+    Those to select by, the strongest of each motion, then the others, by falling scale: where nothing moves, nothing is
+    told.
     """
     falling = sorted((campaign.tests[name] for name in names), key=lambda test: (-abs(test.scale), test.name))
     strongest = {}
     for test in falling:
         strongest.setdefault(test.motion, test)
-    order = dict.fromkeys(test.name for test in [*strongest.values(), *falling])
+    select = [test for test in falling if test.role == "select"]
+    order = dict.fromkeys(test.name for test in [*select, *strongest.values(), *falling])
     chosen = list(order)[:most]
     return [name for name in names if name in chosen]
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from blockshake.diagnosis.gain.section import drift_figure
 from blockshake.diagnosis.report.statement import changed, not_told, sensor_faults, statement, until_then
 from blockshake.diagnosis.wording import NO_ERROR, chance_words, estimate_words, name_of, percent_words
 from blockshake.effects.registry import title_of
@@ -93,11 +94,13 @@ def next_tests_table(verdict):
 
 
 def _figures(diagnosed):
-    """Figures of measured and explained forces on blocks and motion of the slab."""
+    """Figures of the sealed tests before and after, of forces on blocks, and of the motion of the slab."""
     parts = diagnosed.decision.parts
     moves = [part for part in parts if part.readings in _OF_SLAB]
     joints = [part.causes[0] for part in parts if part not in moves]
+    drift = drift_figure(diagnosed)
     return [
+        *([drift] if drift else []),
         *([_forces(diagnosed, joints)] if joints or not moves else []),
         *(_slab(diagnosed, part) for part in moves),
     ]

@@ -42,11 +42,12 @@ def until_then(diagnosed):
     """A factor on drifts of the nominal model to use until the cause is known better, or that none is known.
 
     The largest over the sealed tests of the upper limit of the drift with the cause over that without it, from the
-    same samples; never below 1.
+    same samples; never below 1. None of a model that is not proposed.
     """
     gain, verdict = diagnosed.gain, diagnosed.verdict
     factors = {}
-    if gain is not None and "value" in gain and "test" in gain.dims:
+    simulated = gain is not None and "value" in gain and "test" in gain.dims
+    if simulated and verdict.extension:
         for test in gain["test"].values:
             at = gain.sel(test=test, response="median_drift")
             without = float(at["value"].sel(side="without"))
@@ -61,6 +62,7 @@ def until_then(diagnosed):
         test=worst,
         limits=sum(name not in verdict.causes for name in verdict.excluded_above),
         quick=diagnosed.effort == "quick",
+        idle=simulated and not verdict.extension,
     )
 
 

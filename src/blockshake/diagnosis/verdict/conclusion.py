@@ -34,7 +34,8 @@ def conclude(decision, findings, kinds, caveats=(), measured=None, judged=None):
     Notes
     -----
     A sensor fault beside what acts in the forces, an effect or a form from outside, is a combination: the fault was
-    corrected first. The entry of a fault in ``probabilities`` is 1 less the chance of the parity check.
+    corrected first. The entry of a fault in ``probabilities`` is 1 less the chance of the parity check. Causes that
+    gain nothing on the tests to select by stay named, and the model with them is not proposed.
     """
     sensors, measured = sensor_causes(findings, kinds), measured or MeasuredGain()
     kind, causes = decision.decision, [*sensors, *(one.name for one in decision.causes)]
@@ -71,7 +72,7 @@ def conclude(decision, findings, kinds, caveats=(), measured=None, judged=None):
         limits=decision.limits,
         word=word,
         missing=missing,
-        extension=decision.extending,
+        extension=decision.extending if measured.proposes else (),
         histories=decision.histories,
         **judged or {},
     )

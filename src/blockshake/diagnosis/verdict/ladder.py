@@ -58,6 +58,8 @@ def rung(kind, decision, beside_sensor, measured):
 
 def _of_gain(measured):
     missing = []
+    if not measured.proposes:
+        missing.append("the model with it gains nothing on the tests to select by, and is not proposed")
     for gain, what in ((measured.rows, "forces"), (measured.gain, "responses")):
         if gain is None:
             missing.append(f"no gain was measured on the {what} of a sealed test")

@@ -30,6 +30,11 @@ class Contrast(Strict):
         ends = {"estimate": estimate, "lower": min(lower, estimate), "upper": max(upper, estimate)}
         return cls(**{name: float(np.clip(value, -1.0, 1.0)) for name, value in ends.items()})
 
+    @property
+    def gains(self):
+        """Whether anything is gained: the whole interval is above 0."""
+        return self.lower > 0.0
+
     @classmethod
     def of_errors(cls, rival, extended):
         """Share of a rival's error that the extended model removes: both once, and then with tests drawn again."""
@@ -54,8 +59,17 @@ class MeasuredGain(Strict):
 
     rows: Gain | None = None
     gain: Gain | None = None
+    select: Contrast | None = Field(
+        None,
+        description="on responses of the tests to select by, over the nominal model; none without such tests",
+    )
     caveats: tuple[str, ...] = ()
     runs: Count = 0
+
+    @property
+    def proposes(self):
+        """Whether the model with the causes is proposed: not where it gains nothing on the tests to select by."""
+        return self.select is None or self.select.gains
 
 
 class Misfit(Strict):
@@ -102,7 +116,9 @@ class Verdict(Shown, Strict):
     row_gain: Gain | None = None
     next_tests: tuple[Measurement, ...] = ()
     extension: tuple[Cause, ...] = Field(
-        (), description="the likeliest cause of every part, by which a study is extended"
+        (),
+        description="the likeliest cause of every part, by which a study is extended; empty where they gain nothing on "
+        "the tests to select by",
     )
     histories: tuple[History, ...] = Field((), description="sizes from test to test")
     structure: str = Field("", description="digest of what was tested, by its content")
