@@ -99,7 +99,7 @@ def _prediction(axes, structure):
     test, _ = measured_on_clock(MEASURED, base)
     axes.plot(test["time"], 1e3 * top_drift(test), color=BLACK, linewidth=0.8, label="synthetic test")
     axes.set(xlim=(0.0, CASE["duration"]), xlabel="time [s]", ylabel="top block over the slab [mm]")
-    axes.set_title("how sure the prediction is")
+    axes.set_title("a prediction, and a test with a slippery joint")
     axes.legend(loc="lower left")
 
 

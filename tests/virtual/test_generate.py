@@ -167,6 +167,13 @@ def test_every_effect_is_drawn_by_some_seed_with_a_size_that_shows(stiffness):
     assert names == set(EFFECTS)
 
 
+@pytest.mark.parametrize(("name", "joint"), [("configuration-2", "block"), ("configuration-3", "wall-a")])
+def test_of_several_places_the_first_that_the_structure_has_is_taken(name, joint):
+    places = [{"joint": [f"{one}-1", f"{one}-2"]} for one in ("block", "wall-a")]
+    hidden = Hidden(effect="weak-joint", place=places)
+    assert hidden_effect(hidden, load_structure(name), 1)["place"] == {"joint": [f"{joint}-1", f"{joint}-2"]}
+
+
 @pytest.mark.parametrize(
     ("changed", "message"),
     [

@@ -23,6 +23,7 @@ from blockshake.validation import Count, Finite, NotNegative, Positive, Strict, 
 from blockshake.virtual.truth import hidden_effect
 
 _FEWEST_READINGS = 40  # of a test
+_Place = dict[str, str | tuple[str, str]]
 
 
 class Intensities(Rungs):
@@ -49,7 +50,9 @@ class Hidden(Strict):
         "drawn", description="name of an effect, `none`, or `drawn` by the seed from the registry"
     )
     values: dict[str, Finite] = Field({}, description="of its parameters")
-    place: dict[str, str | tuple[str, str]] | None = Field(None, description="where, as in the verdict")
+    place: _Place | Annotated[tuple[_Place, ...], Field(min_length=1)] | None = Field(
+        None, description="where, as in the verdict; of several the first that the structure has"
+    )
 
 
 class VirtualCampaign(Strict):

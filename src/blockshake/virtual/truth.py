@@ -57,11 +57,17 @@ def hidden_effect(hidden, structure, seed):
     places = effect.places(structure)
     if not places:
         raise InputError(structure.source, name, "expected a structure that has a place for this effect")
-    place = hidden.place
-    if place is None:
+    if hidden.place is None:
         place = places[_stream(seed, _PLACE).integers(len(places))]
-    place = {kind: list(names) if isinstance(names, tuple) else names for kind, names in place.items()}
+    else:
+        given = [hidden.place] if isinstance(hidden.place, dict) else hidden.place
+        stated = [{kind: _listed(names) for kind, names in one.items()} for one in given]
+        place = next((one for one in stated if one in places), stated[0])
     return {"name": name, "values": _values(effect, seed) | hidden.values, "place": place}
+
+
+def _listed(names):
+    return list(names) if isinstance(names, tuple) else names
 
 
 def _values(effect, seed):

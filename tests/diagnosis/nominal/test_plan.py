@@ -20,8 +20,8 @@ def test_strongest_of_each_motion_then_by_falling_scale():
     campaign = load_campaign(CAMPAIGN)
     names = open_tests(campaign)
     assert not set(names) & set(campaign.sealed)
-    assert simulated_tests(campaign, names, 2) == ["alkion-275", "basso-tirreno-275"]
-    assert simulated_tests(campaign, names, 3) == ["alkion-200", "alkion-275", "basso-tirreno-275"]
+    assert simulated_tests(campaign, names, 2) == ["alkion-200", "basso-tirreno-200"]
+    assert simulated_tests(campaign, names, 3) == ["alkion-125", "alkion-200", "basso-tirreno-200"]
     assert simulated_tests(campaign, names, 99) == names
     weak = replace(campaign, tests={
         **campaign.tests, names[0]: campaign.tests[names[0]].model_copy(update={"role": "select"}),
