@@ -99,7 +99,10 @@ def test_progress_is_told_by_case_with_the_time_left(folder, workflow, capsys):
     # and 10 x 10 s by LS-DEM
     assert told[1] == "weak, LS-DEM: 10 of 10 samples; 20 of 40 runs; about 70 s left"
     # samples that were kept cost nothing
-    assert told[2] == "strong, LS-DEM: 10 of 10 samples; 30 of 40 runs; about 20 s left"
+    assert (
+        told[2]
+        == "strong, LS-DEM: 10 of 10 samples; 30 of 40 runs, 10 of them from the store; about 20 s left"
+    )
     assert len(told) == 3
 
 
@@ -113,6 +116,21 @@ def test_a_command_that_goes_on_counts_what_is_there(folder, workflow, capsys):
     said = capsys.readouterr().out.partition("mine: ")[2].splitlines()
     assert said[1] == "8 of them are there from before, and run again only where their input changed"
     assert any(line.startswith("weak, LS-DEM: 10 of 10 samples; 10 of 40 runs; ") for line in said)
+
+
+def test_no_time_is_told_where_none_is_known_and_never_no_time_while_runs_are_left(folder):
+    heard = []
+    progress = of_study._Progress(load_config("study.yaml"), 1, None, folder, heard.append)
+    for number in range(10):
+        progress(sample("weak", "ls-dem", number))
+    assert heard[-1].endswith("10 of 40 runs, 10 of them from the store; the time left is not known yet")
+    for case, model in (("strong", "ls-dem"), ("weak", "nscd-rigid"), ("strong", "nscd-rigid")):
+        for number in range(10):
+            progress(sample(case, model, number, 0.01))
+        assert " 0 s" not in heard[-1]
+    assert heard[-1].endswith(
+        "40 of 40 runs, 10 of them from the store; all runs are done, and the jobs after them are left"
+    )
 
 
 def test_a_command_without_anything_to_do_says_so(folder, workflow, capsys):

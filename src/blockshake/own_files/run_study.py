@@ -18,7 +18,7 @@ from blockshake.study.config import load_config
 from blockshake.study.growth import grow, reached
 from blockshake.working_folder import hold
 
-_SAMPLE = re.compile(r"^(\S+) (\S+) sample (\d+), (?:kept|simulated): .*?(?:; took ([\d.e+]+) s)?$")
+_SAMPLE = re.compile(r"^(\S+) (\S+) sample (\d+), (kept|simulated): .*?(?:; took ([\d.e+]+) s)?$")
 _STEPS = re.compile(r"^(\d+) of (\d+) steps \((\d+)%\) done$")
 _IDLE = "Nothing to be done"
 _END = re.compile(r"^(Not finished\.|blockshake: )")
@@ -156,7 +156,7 @@ class _Progress:
             (case, model): _finished(runs / model / case) & set(range(wanted))
             for (case, model), wanted in self.wanted.items()
         }
-        self.costs = {pair: [] for pair in self.wanted}
+        self.costs, self.kept = {pair: [] for pair in self.wanted}, 0  # runs that the store had
         self.total, self.ending, self.idle, self.last = sum(self.wanted.values()), False, False, []
 
     def __call__(self, line):
@@ -168,8 +168,9 @@ class _Progress:
         if found := _SAMPLE.match(line):
             pair = found[1], found[2]
             if pair in self.done:
+                self.kept += found[4] == "kept" and int(found[3]) not in self.done[pair]
                 self.done[pair].add(int(found[3]))
-                self.costs[pair] += [float(found[4])] if found[4] else []
+                self.costs[pair] += [float(found[5])] if found[5] else []
                 self._tell(pair)
         elif (found := _STEPS.match(line)) and self._is_due() and not self.runs_left():
             self._say(f"all runs are done; {found[1]} of {found[2]} jobs")
@@ -184,6 +185,7 @@ class _Progress:
         count, wanted = len(self.done[pair]), self.wanted[pair]
         if count == wanted or self._is_due():
             share = f"{self.total - self.runs_left()} of {self.total} runs"
+            share += f", {self.kept} of them from the store" if self.kept else ""
             label = model_label(pair[1])
             self._say(f"{pair[0]}, {label}: {count} of {wanted} samples; {share}; {self._left()}")
 
@@ -207,7 +209,12 @@ class _Progress:
             ]
             unknown = unknown or not rates
             seconds += left * sum(rates) / max(len(rates), 1)
-        return f"{'more than' if unknown else 'about'} {_minutes(seconds / self.cores)} left"
+        if not self.runs_left():
+            return "all runs are done, and the jobs after them are left"
+        if seconds == 0.0:
+            return "the time left is not known yet"
+        words = _minutes(max(seconds / self.cores, 1.0))
+        return f"{'more than' if unknown else 'about'} {words} left"
 
 
 def _finished(folder):
