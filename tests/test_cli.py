@@ -260,7 +260,7 @@ def test_a_command_that_fails_leaves_no_folder_and_one_line(arguments, tmp_path,
 def test_a_check_of_several_files_says_last_how_many_are_wrong(tmp_path, capsys):
     (tmp_path / "bad.yaml").write_text("bodies: []\n")
     assert main(["check", "configuration-1", str(tmp_path / "bad.yaml"), "configuration-2"]) == 2
-    assert capsys.readouterr().err.splitlines()[-1] == "blockshake: 1 of 3 files are wrong"
+    assert capsys.readouterr().err.splitlines()[-1] == "blockshake: 1 of 3 files is wrong"
 
 
 def test_a_missing_folder_is_made_with_the_file_alone(tmp_path):

@@ -457,7 +457,8 @@ def _check(options):
             print(f"blockshake: {error}", file=sys.stderr)
             wrong += 1
     if wrong and len(options.files) > 1:
-        print(f"blockshake: {wrong} of {len(options.files)} files are wrong", file=sys.stderr)
+        verb = "is" if wrong == 1 else "are"
+        print(f"blockshake: {wrong} of {len(options.files)} files {verb} wrong", file=sys.stderr)
     return BAD_INPUT if wrong else 0
 
 

@@ -13,7 +13,7 @@ import yaml
 from blockshake.errors import INTERRUPTED, InputError
 from blockshake.files import AnyPath, check_output, load_yaml, write_text
 from blockshake.own_files.run_workflow import WorkflowError, cores_of, run_workflow, workflow_command
-from blockshake.pages.wording import model_label
+from blockshake.pages.wording import count_words, model_label
 from blockshake.study.config import load_config
 from blockshake.study.growth import grow, reached
 from blockshake.working_folder import hold
@@ -85,7 +85,9 @@ def run_study(
     report = folder / "reports" / "-".join(filter(None, (config.name, case)))
     target, results = f"reports/{report.name}.html" if case else "all", folder / "results"
     heard = _Progress(reached(config, results), cores, case, folder, say)
-    say(f"{config.name}: {heard.total} runs of {', '.join(config.models)}, on {cores} cores, in {folder}")
+    say(
+        f"{config.name}: {heard.total} runs of {', '.join(config.models)}, on {count_words(cores, 'core')}, in {folder}"
+    )
     if kept := heard.total - heard.runs_left():
         say(f"{kept} of them are there from before, and run again only where their input changed")
     if not any((folder / "results" / "kernels").glob("*")):

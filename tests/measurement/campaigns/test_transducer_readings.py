@@ -70,7 +70,7 @@ def test_the_virtual_table_reads_them_with_noise_and_check_tells_it(folder):
     # 512 differences of neighbours in all: a standard error of 4 % with the rounding to 0.01 mm
     assert np.sqrt(np.mean(np.diff(quiet, axis=0) ** 2) / 2.0) == pytest.approx(NOISE, rel=0.15)
     lines = campaign_lines(folder)
-    assert lines[0].endswith("of displacement transducers 0.0002 m")
+    assert lines[0].endswith("of displacement transducers 0.2 mm")
     assert "2 displacement transducers at 512 Hz with 0 % gaps" in lines[1]
     assert lines[-1] == "no inconsistency found"
 

@@ -241,7 +241,7 @@ def test_own_limit_states_stand_on_the_first_page_level_by_level(content):
     assert said.endswith(f"probability {low} to {high} %.")
     (said,) = parts(at_levels(limited))[2]["own-limits"]
     assert f"all 4 runs of {FIRST} at 6 m/s² by LS-DEM, 1 not known" in said
-    assert f"{100.0 * share_interval(4, 4, 1)[0]:.0f} to 100 %, the worst of 2" in said
+    assert f"{100.0 * share_interval(4, 4, 1)[0]:.0f} to 100 %, the highest of 2" in said
     table = next(block for block in limit_states(at_levels(limited)).blocks if block.kind == "table")
     assert [row[6:8] for row in table.rows] == [("0 of 5", "0.0 %"), ("4 of 4", "100.0 %")]
 

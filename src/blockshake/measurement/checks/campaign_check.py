@@ -65,10 +65,10 @@ def shaken_lines(campaign):
     structure = load_structure(campaign.structure)
     lines = [
         f"campaign {campaign.name} on {campaign.structure}: {len(campaign.tests)} tests; stated noise of markers "
-        f"{campaign.sensors.marker_noise:g} m, of accelerometers {campaign.sensors.accelerometer_noise:g} m/s2"
+        f"{1e3 * campaign.sensors.marker_noise:g} mm, of accelerometers {campaign.sensors.accelerometer_noise:g} m/s2"
     ]
     if structure.file.displacement_transducers:
-        lines[0] += f", of displacement transducers {campaign.sensors.transducer_noise:g} m"
+        lines[0] += f", of displacement transducers {1e3 * campaign.sensors.transducer_noise:g} mm"
     remarks, read, named, first = [f"  {remark}" for remark in point_remarks(structure)], {}, set(), {}
     tests = {}
     for entry in campaign.tests.values():

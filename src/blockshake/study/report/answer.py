@@ -102,7 +102,8 @@ def _verdict(content, found):
     stand = [(model, one) for name in sides["stand"] for model, one in best[name].items()]
     told = {name: best[name] | {m: one for m, one in found[name].items() if one.collapsed} for name in found}
     told = {name: dict(sorted(one.items(), key=lambda item: -item[1].share)) for name, one in told.items()}
-    return _WORDS.verdict(
+    sentences = _WORDS.items(
+        "verdict",
         sides={side: content.places(names) for side, names in sides.items()},
         may=sides["may"],
         every=[names for names in sides.values() if names] == [list(found)] and len(content.cases),
@@ -116,6 +117,7 @@ def _verdict(content, found):
         told=told,
         lower=min((one.limits[0] for name in sides["fall"] for one in best[name].values()), default=0.0),
     )
+    return "\n".join(sentences)
 
 
 def _facts(stripes, found, shown, theory):
@@ -178,8 +180,8 @@ def _table(stripes, found):
         (
             name, model_label(model), f"{one.collapsed} of {one.counted}",
             f"{whole_percent(one.limits[0])} to {whole_percent(one.limits[1])}" if one.is_sure else "too few runs",
-            length(one.peak), f"{length(one.least)} to {length(one.most)}" if one.counted > 1 else "one run",
-            f"{whole_percent(one.margin)} ({_margin(one.least_margin)})" if np.isfinite(one.margin) else MISSING,
+            length(one.peak), span((one.least, one.most)) if one.counted > 1 else "one run",
+            _margins(one),
             "" if one.collapsed else length(one.end) if np.isfinite(one.end) else "moves", one.block,
         )
         for name, ended in found.items()
@@ -197,6 +199,12 @@ def _table(stripes, found):
         ),
         tuple(rows), "llrrrrrrl", (1.9, 1.5, 1.1, 1.2, 1.0, 1.3, 1.1, 0.8, 1.2),
     )  # fmt: skip
+
+
+def _margins(one):
+    """Margin of the median run, and of the worst in brackets where it is another."""
+    both = dict.fromkeys((_margin(one.margin), _margin(one.least_margin)))
+    return " (".join(both) + ")" * (len(both) - 1) if np.isfinite(one.margin) else MISSING
 
 
 def _margin(least):

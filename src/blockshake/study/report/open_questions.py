@@ -118,7 +118,7 @@ def unknown(content):
         falling=_by_model(cases, lambda ended: ended.falling),
         assumed=sorted({case.name for case in cases} - set(calibrated)),
         bare=bare,
-        cut=_by_model(cases, lambda ended: ended.collapsed + ended.falling),
+        cut=sum(some for *_, some, _ in _by_model(cases, lambda ended: ended.collapsed + ended.falling)),
         failed=_by_model(cases, lambda ended: ended.failed),
         chaotic=_chaotic(content.stripes),
         unanswered=[

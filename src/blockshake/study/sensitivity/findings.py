@@ -6,6 +6,7 @@ import numpy as np
 
 from blockshake.pages.rows import bodies_by_height, face_markers
 from blockshake.pages.wording import listed, millimetres, model_label, parameter_label, percent
+from blockshake.pages.words import span, whole_percent
 from blockshake.study.ensembles.envelope import STILL
 
 SHARED = 0.05  # r squared of two variables beyond which they are said to share their indices
@@ -159,13 +160,14 @@ def explained_by_motion(case):
 
 
 def motion_sentences(content):
-    """Share that record and level explain, a sentence a case whose samples are scaled to levels of several records."""
+    """Share that record and level explain, a sentence for cases alike whose samples are scaled to levels of records."""
+    alike = {}
     for name, case in content.cases.items():
         if shares := explained_by_motion(case):
-            known = " to ".join(
-                dict.fromkeys(f"{100.0 * end:.0f}" for end in (min(shares.values()), max(shares.values())))
-            )
-            yield (
-                f"{name}: record and level explain {known} % of the spread of the largest displacement "
-                f"({listed([*map(model_label, shares)])}). The sampled properties explain at most the rest."
-            )
+            known = span(shares.values(), whole_percent)
+            alike.setdefault((known, listed([*map(model_label, shares)])), []).append(name)
+    for (known, models), names in alike.items():
+        yield (
+            f"{listed(names)}: record and level explain {known} % of the spread of the largest displacement "
+            f"({models}). The sampled properties explain at most the rest."
+        )
