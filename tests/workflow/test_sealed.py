@@ -35,7 +35,11 @@ def test_nothing_up_to_the_decision_has_a_sealed_file_as_input():
     assert {"decide", "conclude"} <= set(inputs)
     assert not any(files & sealed for files in inputs.values())
     # the test can fail: open files are found among the inputs
-    assert {rule for rule, files in inputs.items() if files & opened} == {"simulate_clean", "decide", "conclude"}
+    assert {rule for rule, files in inputs.items() if files & opened} == {
+        "simulate_clean",
+        "decide",
+        "conclude",
+    }
 
 
 def test_two_rules_ask_for_sealed_files():

@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.effects.effect import Columns, Effect, EffectParameter
 from blockshake.effects.places import nowhere
-from blockshake.forces.seen.wrench_histories import friction_against_slip
+from blockshake.forces.seen.wrench_histories import friction_against_slip, slips_early
 
 _SCALE = 0.6
 _MOST = 0.99  # of the coefficient
@@ -25,8 +25,14 @@ def with_drop(experiment, values, along):
 
 
 def drop_columns(seen, history, scales):
-    """`Columns` of the friction that all joints lose, by ``history`` (n_times, n_joints) over each of some scales."""
-    full = [f.friction * seen.rows.along(friction_against_slip(seen, i)) for i, f in enumerate(seen.faces)]
+    """`Columns` of the friction that all joints lose, by ``history`` (n_times, n_joints) over each of some scales.
+
+    A joint that begins to slip at less than half of its friction has not lost it by this law.
+    """
+    full = [
+        f.friction * seen.rows.along(friction_against_slip(seen, i)) * (not slips_early(seen, i))
+        for i, f in enumerate(seen.faces)
+    ]
     drops = (1.0 - np.exp(-history[seen.rows.instant] / scale) for scale in scales)
     return [
         Columns(

@@ -7,6 +7,8 @@ frame, per unit of its amplitude. It is zero where a motion is not known: no row
 import numpy as np
 
 _WIDEST = 2.0 / 3.0  # of the half width: an elastic face bears at most so far within its edge
+_EARLY = 0.5  # of the coefficient of friction
+_BEFORE, _AFTER = 0.25, 0.1  # s, about the instant at which a slip is seen
 
 
 def edge_inward(seen, face, tangent=0, edge=0):
@@ -62,6 +64,24 @@ def friction_against_slip(seen, face):
     against = -seen.states.slip[:, face] * normal_force(seen, face)
     force = against[:, None] * seen.frames.axes[:, face, :, 0]
     return np.nan_to_num(seen.frames.between(face, force, seen.bearing[:, face]))
+
+
+def slips_early(seen, face):
+    """Whether the first slip of a face in the test begins at less than half of its friction; False in a loop.
+
+    The shear over the normal force is at its largest about the instant at which the slip is seen. Friction that falls
+    with the slip or its rate would be whole until then.
+    """
+    slipping = np.flatnonzero(seen.states.slip[:, face])
+    if not (seen.tree and len(slipping)):
+        return False
+    start = seen.motion.time[slipping[0]]
+    about = (seen.motion.time >= start - _BEFORE) & (seen.motion.time <= start + _AFTER)
+    force = seen.forces.force[about, face]
+    known = force[:, 2] > 0.0
+    if not known.any():
+        return False
+    return bool((np.abs(force[known, 0]) / force[known, 2]).max() < _EARLY * seen.faces[face].friction)
 
 
 def normal_force(seen, face):
