@@ -24,7 +24,8 @@ COMPILE = (
 )
 # files that take long: a parallel run begins with them, so that no worker is left with one at the end
 LONG = (
-    "test_workflow.py", "test_parity.py", "test_causes_are_found.py", "test_metamorphic.py", "test_report.py",
+    "test_pages_that_run.py", "test_workflow.py", "test_parity.py", "test_causes_are_found.py",
+    "test_metamorphic.py", "test_report.py",
     "test_resume.py", "test_steps.py", "test_plan_campaign.py", "test_clocks.py", "test_flights.py",
     "test_answers.py", "test_sampled_shapes.py", "test_failures.py", "test_measured_flights.py",
 )  # fmt: skip
