@@ -89,11 +89,12 @@ def test_a_test_too_short_for_the_kernel_is_said(folder):
     assert [test.name for test in found.tests] == ["two-100"]
 
 
-def test_a_campaign_of_which_no_test_is_seen_is_refused_with_the_reasons(folder):
+def test_a_campaign_of_which_no_test_is_seen_ends_without_a_cause_and_with_the_reasons(folder):
     for name in OPEN:
         write_dataset(folder / f"{name}.nc", xr.load_dataset(folder / f"{name}.nc").isel(time=slice(40)))
-    with pytest.raises(InputError, match="one-100 is not judged: the test is too short; two-100"):
-        steps.decide(str(folder), (), None)
+    decided = steps.decide(str(folder), (), None).decision
+    assert (decided.decision, decided.tests) == ("none", ())
+    assert decided.cannot_see == tuple(f"{name} is not judged: the test is too short" for name in OPEN)
 
 
 def test_sensors_without_stated_noise_are_the_best_instruments(folder):

@@ -117,6 +117,8 @@ def _of_channels(test, until, structure):
     sensors = [(sensor, axis) for sensor in structure.file.accelerometers for axis in sensor.axes]
     read = [f"{sensor.name}-{axis}" in test["channel"].values for sensor, axis in sensors]
     sensors = [one for one, there in zip(sensors, read, strict=True) if there]
+    if not sensors:
+        return None
     names = [f"{sensor.name}-{axis}" for sensor, axis in sensors]
     carried = [sensor for sensor, _ in sensors]
     points = structure.position[structure.carriers(carried)] + structure.arms(carried)
