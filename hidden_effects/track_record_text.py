@@ -2,7 +2,6 @@
 
 import textwrap
 
-from make_case import LABORATORIES
 from outside_forces import OUTSIDE
 from scored_record import Answers
 
@@ -51,39 +50,26 @@ def as_markdown(record):
 
 def in_words(record):
     """The record in sentences of a page, in lines of 100 columns."""
-    places = ", ".join(LABORATORIES[one] for one in record.laboratories)
-    structures = len({case.structure for case in record.cases})
     sentences = [
-        f"We made {len(record.cases)} synthetic campaigns of {structures} structures in {len(record.laboratories)} "
-        f"laboratories ({places}), of other seeds than those that thresholds were set on."
+        f"{len(record.cases)} sealed synthetic campaigns{_SHARE.get(record.part, '')} are by the program's own solvers "
+        "(home), by MuJoCo, or by the own solvers with foreign settings and sensors (abroad)."
     ]
     sentences += [
-        f"{words} ({hits(share)} at home, {hits(record.abroad[name])} abroad; goal {_goal(share)})."
+        f"{words} in {hits(record.laboratories['home'][name])} at home and {hits(record.abroad[name])} abroad "
+        f"(goal {_goal(share)})."
         for name, words in _SAID.items()
         if (share := record.shares[name]).n and name in record.abroad
     ]
-    for name in ("gain_over_oracle",):
-        median = record.medians[name]
-        if median.estimate is not None:
-            sentences.append(
-                f"A proposed extension gains {median.estimate:.2f} of what the true cause would gain, in the median of "
-                f"{median.n} cases (goal {_goal(median)})."
-            )
-    idle = record.shares["gain_idle"]
-    if idle.hits:
-        sentences.append(
-            f"In {hits(idle)} cases even the true cause gains nothing: the cause is there and changes no prediction."
-        )
     sentences.append(
-        "The [track record](docs/results/hidden-effects.md) holds all figures with their misses, and every report "
-        "prints those of the worst laboratory."
+        "The [track record](docs/results/hidden-effects.md) holds all figures with their misses."
     )
     return "\n".join(textwrap.wrap(" ".join(sentences), 100, break_long_words=False, break_on_hyphens=False))
 
 
+_SHARE = {"1/4": ", a quarter of those planned,", "1/2": ", half of those planned,"}
 _SAID = {
     "false_alarms": "An effect was called where nothing was hidden",
-    "truth_in_set_seen": "A hidden effect that the tests can show was named, or listed among the possible causes",
+    "truth_in_set_seen": "A hidden effect that the tests can show was named or listed",
 }
 
 
