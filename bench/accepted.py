@@ -11,7 +11,7 @@ LARGEST_LOSS = 1.3  # operations over the accepted ones
 
 
 def accept(result, table):
-    """Put the table of a whole bench on its page, and the operations of its kernel beside those of other processors."""
+    """Put the table of a whole bench on its page, and the operations of its kernel with those of other processors."""
     put("make bench", f"```\n{table}```\n")
     known = load_json(COUNTS) if COUNTS.exists() else {}
     own = {result["machine"]["instruction_set"]: total_operations(result["arithmetic"])}

@@ -177,7 +177,7 @@ def arrival_words(found, peaks):
         f"{_range(ratio.sel(restitution=NOMINAL[1]))} times that of the study over the definitions at the damping of "
         f"the study, and {_range(ratio.sel(definition=list(LEVELS)))} times over the levels of velocity and all "
         f"dampings. Read once the velocities of all blocks are within {percent(TOLERANCES[0])} to "
-        f"{percent(TOLERANCES[-1])} % of each other, as the paper says, the stiffness is "
+        f"{percent(TOLERANCES[-1])} % of each other, as the paper states, the stiffness is "
         f"{_range(similar.sel(direction='normal'))} times that of the study for normal and "
         f"{_range(similar.sel(direction='shear'))} times for shear waves, where the blocks come so near to each other. "
         "Nominal runs that differ in stiffness and damping only give the highest block of "

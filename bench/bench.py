@@ -31,7 +31,7 @@ PARTS = (
 
 
 def main(arguments=None):
-    """Run the parts asked for."""
+    """Run the parts requested."""
     parser = argparse.ArgumentParser(prog="bench", description=__doc__.partition("\n")[0])
     parser.add_argument("--only", choices=PARTS, action="append", help="measure this part; may be repeated")
     parser.add_argument("--blocks", type=int, nargs="+", help="sizes of the walls")

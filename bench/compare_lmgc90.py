@@ -1,6 +1,6 @@
-"""LMGC90's core beside our nonsmooth contact dynamics: time of a step, and how well each step is solved.
+"""LMGC90's core with our nonsmooth contact dynamics: time of a step, and how well each step is solved.
 
-Run it from the project's root as ``python bench/compare_lmgc90.py`` after ``make peers``; without the peer it says so
+Run it from the project's root as ``python bench/compare_lmgc90.py`` after ``make peers``; without the peer it states it
 and ends well.
 """
 

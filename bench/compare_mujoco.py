@@ -1,6 +1,6 @@
-"""MuJoCo's soft contacts beside our rigid ones on three shaken blocks: time of a step, and what softness costs.
+"""MuJoCo's soft contacts with our rigid ones on three shaken blocks: time of a step, and what softness costs.
 
-Run it from the project's root as ``python bench/compare_mujoco.py`` after ``make peers``; without the peer it says so
+Run it from the project's root as ``python bench/compare_mujoco.py`` after ``make peers``; without the peer it states it
 and ends well.
 """
 
@@ -27,7 +27,7 @@ TIMED = (500, 3000)  # steps
 REPEATS = 5
 TOLERANCE = 1e-6  # of our timed runs; issue "Nonsmooth contact dynamics", section Speed
 # time constant [s] and damping ratio, impedances and width: MuJoCo's defaults, the stiffest time constant that a
-# step of 1 ms allows, and that with impedances near one, as `mujoco_blocks` takes them if not told
+# step of 1 ms allows, and that with impedances near one, as `mujoco_blocks` takes them if unknown
 SETTINGS = {
     "defaults": {"solref": (0.02, 1.0), "solimp": (0.9, 0.95, 1e-3, 0.5, 2.0)},
     "stiff time constant": {"solref": (2e-3, 1.0), "solimp": (0.9, 0.95, 1e-3, 0.5, 2.0)},

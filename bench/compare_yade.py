@@ -1,6 +1,6 @@
-"""Yade's level sets beside LS-DEM on the same three blocks; needs ``yade`` (Debian 12: 2023.02a).
+"""Yade's level sets with LS-DEM on the same three blocks; needs ``yade`` (Debian 12: 2023.02a).
 
-Run it from the project's root as ``python bench/compare_yade.py``; without Yade it says so and ends well.
+Run it from the project's root as ``python bench/compare_yade.py``; without Yade it states it and ends well.
 """
 
 import argparse

@@ -47,7 +47,7 @@ def convergence_rows(settings=None, shaking=SHAKING):
     Notes
     -----
     The floor is the difference that a ground acceleration and a kick larger by one part in a million make to the run
-    with default parameters. Rocking is sensitive: a difference that is no larger says nothing of the parameter.
+    with default parameters. Rocking is sensitive: a difference that is no larger states nothing of the parameter.
     """
     settings = settings or {name: values for name, (values, *_) in PARAMETERS.items()}
     structure, usual_step = load_structure("configuration-1"), model_of(_MODEL).time_step

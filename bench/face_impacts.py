@@ -27,8 +27,8 @@ from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.simulation.simulate import simulate
 from blockshake_flight.arcs import find_arcs
 from blockshake_flight.impacts import find_impacts, summary
-from blockshake_flight.posed_test import PosedCampaign, PosedTest, load_posed
 from blockshake_flight.replay import FlightModel, filmed_replay, start_arc
+from blockshake_flight.tracked_test import TrackedCampaign, TrackedTest, load_tracked
 
 HALF, DENSITY, GRAVITY, RATE = 0.03, 1200.0, 9.81, 250.0  # m, kg/m3, m/s2, readings a second
 MASS = DENSITY * (2.0 * HALF) ** 3  # kg
@@ -61,7 +61,7 @@ THEORY_HEADER = (
 
 
 class Row(NamedTuple):
-    """Of the table: ``returned``: share of the faces; ``kept``, ``lower``, ``upper``: spin kept and its quartiles."""
+    """For the table: ``returned``: share of the faces; ``kept``, ``lower``, ``upper``: spin kept and its quartiles."""
 
     model: str
     setting: str
@@ -110,7 +110,7 @@ def strike(velocity, arm, gyration, restitution, friction):
     Parameters
     ----------
     velocity : float64 array, shape (3,)
-        Of the mass centre along x and z [m/s], and spin, positive from x to z [rad/s]; changed in place.
+        For the mass centre along x and z [m/s], and spin, positive from x to z [rad/s]; changed in place.
     arm : (float, float)
         From the mass centre to the point [m].
     gyration : float
@@ -260,9 +260,9 @@ def solver_path(start, restitution, friction, solver, layer=0.0, **options):
 
 
 def posed_square(tests):
-    """`PosedCampaign` of tests of the square over its ground."""
+    """`TrackedCampaign` of tests of the square over its ground."""
     structure = square(0.0, FRICTION)
-    return PosedCampaign(structure, tests, 1, structure.solids["square"].polyhedron.vertices, 0.0)
+    return TrackedCampaign(structure, tests, 1, structure.solids["square"].polyhedron.vertices, 0.0)
 
 
 def read(paths):
@@ -271,7 +271,7 @@ def read(paths):
     for number, path in enumerate(paths):
         rotation = Rotation.from_rotvec(np.outer(-path[:, 2], [0.0, 1.0, 0.0])).as_matrix()
         place = np.column_stack([path[:, 0], np.zeros(len(path)), path[:, 1]])
-        tests.append(PosedTest(f"{number:03d}", np.arange(len(path)) / RATE, place, rotation, planar=True))
+        tests.append(TrackedTest(f"{number:03d}", np.arange(len(path)) / RATE, place, rotation, planar=True))
     first = {}
     for impact in find_impacts(posed_square(tests), []):
         first.setdefault(impact.test, impact)
@@ -404,7 +404,7 @@ def replayed():
         return None
     with tempfile.TemporaryDirectory() as folder:
         campaign = load_campaign(make_campaign("square-drops", FILMS, Path(folder) / "drops", 1))
-        posed = load_posed(campaign, list(campaign.open))
+        posed = load_tracked(campaign, list(campaign.open))
     arcs, _ = find_arcs(posed)
     measured = _row_of("measured", "", find_impacts(posed, arcs))
     cells, words = [(*_cells(measured), "", "")], []

@@ -13,7 +13,7 @@ from matplotlib.collections import PolyCollection
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
-from blockshake.forces.seen.seen_test import see_test
+from blockshake.forces.seen.reconstructed_test import reconstruct_test
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Sensors
 from blockshake.measurement.motion.body_frame import without_outliers
@@ -112,7 +112,7 @@ def _what_the_readings_show(axes, structure, motion):
         (reduced, RED, f"bearing {1e3 * INSET:.0f} mm in"),
     ):
         test = observe(_run(experiment.structure, motion), structure, experiment.instruments, seed=1)
-        seen = see_test(words, without_outliers(test, structure), structure, Sensors())
+        seen = reconstruct_test(words, without_outliers(test, structure), structure, Sensors())
         turned = seen.states.edge[:, LOWEST, 0] != 0
         turn, force = seen.joints.rotation[turned, LOWEST], seen.forces.force[turned, LOWEST, 2]
         lever = -seen.forces.moment[turned, LOWEST, 1] / force

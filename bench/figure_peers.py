@@ -1,6 +1,6 @@
 """Figure of ``docs/results/peers.md``: nine blocks in LMGC90 and here, and three in MuJoCo; needs ``make peers``.
 
-Run it from the project's root as ``python bench/figure_peers.py``; without the peers it says so and ends well.
+Run it from the project's root as ``python bench/figure_peers.py``; without the peers it states it and ends well.
 """
 
 import argparse

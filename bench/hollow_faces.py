@@ -1,4 +1,4 @@
-"""Impact and sway of configuration 1 with hollow faces, by LS-DEM, beside NSCD and Housner's edges."""
+"""Impact and sway of configuration 1 with hollow faces, by LS-DEM, with NSCD and Housner's edges."""
 
 from kicked_block import housner_ratio, rocking_block
 from shaken_stack import SHAKING, shaken_stack

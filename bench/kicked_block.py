@@ -1,4 +1,4 @@
-"""One block that rocks freely after a kick: the impact that a model makes, beside Housner's."""
+"""One block that rocks freely after a kick: the impact that a model makes, with Housner's."""
 
 import dataclasses
 
@@ -23,7 +23,7 @@ def rocking_block(structure, model, parameters, time_step, strength):
     structure : Structure
         Its driven bodies and the first free body that touches one are taken.
     model : str
-        Of the table `blockshake.simulation.models.MODELS`.
+        The table `blockshake.simulation.models.MODELS`.
     parameters : pydantic model
         Numerical ones of the model.
     time_step : float

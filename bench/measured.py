@@ -29,8 +29,8 @@ from blockshake_flight.arcs import find_arcs, noise_of
 from blockshake_flight.causes import CAUSES
 from blockshake_flight.evidence import FlightFit
 from blockshake_flight.figure import plot_accelerations, plot_errors
-from blockshake_flight.posed_test import load_posed
 from blockshake_flight.replay import FlightModel, filmed_replay, start_arc
+from blockshake_flight.tracked_test import load_tracked
 from blockshake_flight.tumbling import tumbling
 
 ROOT = Path(__file__).parents[1]
@@ -50,12 +50,12 @@ SETS = {
         "Tosses of a cube",
         "An acrylic cube of 104.8 mm and 0.37 kg is tossed onto a table and tracked by tags at 148 Hz (Pfrommer, Halm "
         "and Posa 2020, arXiv:2009.11193, BSD-3-Clause). Its authors state moments of inertia of 1.2 times those of "
-        "an even cube, alike about all axes, friction of 0.18 and a restitution of 0.125; the campaign says none of "
+        "an even cube, alike about all axes, friction of 0.18 and a restitution of 0.125; the campaign states none of "
         "these, and its friction of 0.3 without restitution is a guess.",
         0.1048,
     ),
 }
-STATED_NOISE = {"square-drops": 5e-5}  # m, of a coordinate, as the data's README says
+STATED_NOISE = {"square-drops": 5e-5}  # m, of a coordinate, as the data's README states
 # mean and standard deviation over 550 tosses with each simulator's own fit, as two public repositories quote the paper
 PUBLISHED = (
     "Acosta, Yang and Posa (2022, IEEE RA-L 7(3), arXiv:2110.00541) report for 550 tosses, each simulator with "
@@ -69,7 +69,7 @@ def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("shared", type=Path)
     parser.add_argument(
-        "--halves", type=int, default=10, help="random halves that are decided on beside the first"
+        "--halves", type=int, default=10, help="random halves that are decided on given the first"
     )
     options = parser.parse_args(arguments)
     parts = [made_by()]
@@ -157,7 +157,7 @@ def _part(name, source, folder, halves):
 
 
 def _noise(name, noise):
-    """Sentence on the noise beside the stated one, where one is."""
+    """Sentence on the noise next to the stated one, where one is."""
     if name in STATED_NOISE:
         share = noise / STATED_NOISE[name]
         yield f"Noise of a coordinate in flight: {1e3 * noise:.3g} mm, {share:.2f} of the stated one."
@@ -174,7 +174,7 @@ def causes_in_words(decision, titles):
             odds = (
                 ""
                 if cause is part.causes[0]
-                else f"; less likely by {np.exp(cause.odds):.2g} times, not told apart"
+                else f"; less likely by {np.exp(cause.odds):.2g} times, not distinguished"
             )
             yield f"{titles[cause.name]}: {sizes}; gain {cause.gain:.0f} nats{odds}"
 
@@ -218,7 +218,7 @@ def _started_again(folder, decision, gain, width):
     added again, of places and of rotations: no model can be expected to predict the tests better than that.
     """
     campaign = load_campaign(folder)
-    posed = load_posed(campaign, list(campaign.open))
+    posed = load_tracked(campaign, list(campaign.open))
     arcs, _ = find_arcs(posed)
     noise, turned = noise_of(arcs), np.sqrt(np.mean([_turn_noise(posed, arc) ** 2 for arc in arcs]))
     by_name = {cause.name: cause for cause in CAUSES}

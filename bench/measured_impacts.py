@@ -8,8 +8,8 @@ from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.statistics.intervals import quantile_interval
 from blockshake_flight.arcs import find_arcs
 from blockshake_flight.impacts import find_impacts, impact_law, summary
-from blockshake_flight.posed_test import load_posed
 from blockshake_flight.replay import FlightModel, filmed_replay, start_arc
+from blockshake_flight.tracked_test import load_tracked
 
 ELLIPSE = (0.035, 0.025)  # m, half axes
 LS_DEM = {
@@ -80,7 +80,7 @@ def _ellipse(source):
 def faces_table(folder, gain):
     """Table of what faces that come down in rocking keep: measured, and by both solvers, read by the same program."""
     campaign = load_campaign(folder)
-    posed = load_posed(campaign, list(campaign.open))
+    posed = load_tracked(campaign, list(campaign.open))
     arcs, _ = find_arcs(posed)
     tests = [(test, arc) for test in posed.tests if (arc := start_arc(test, arcs)) is not None]
     own = gain.sel(kind="recalibrated")

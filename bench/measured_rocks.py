@@ -111,8 +111,8 @@ def _row(words, chance, fell):
 def _gains(verdict):
     rows = ["| rival | gain in Brier score on sealed tests | interval of 90 % |", "| --- | --- | --- |"]
     for rival, words in (
-        ("nominal", "sound models, before any outcome was known"),
-        ("recalibrated", "sound models, weighted by the open outcomes"),
+        ("nominal", "undamaged models, before any outcome was known"),
+        ("recalibrated", "undamaged models, weighted by the open outcomes"),
         ("discrepancy", "logistic curve, fitted to the open outcomes"),
     ):
         one = verdict["gain"][rival]

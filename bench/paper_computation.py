@@ -109,7 +109,7 @@ def correlation_control(content):
     error, chance = summary["rms_correlation_error"], 1.0 / np.sqrt(summary["size"] - 1.0)
     target = "that of the configuration" if content.study["ensemble"].get("correlation") else "none"
     return error < 0.1 * chance, (
-        f"The paper states no correlation; asked for here: {target}. The correlations of the samples miss it by "
+        f"The paper states no correlation; requested here: {target}. The correlations of the samples miss it by "
         f"{number(error, 2)} rms and {number(summary['largest_correlation_error'], 2)} at most; pairs at random miss "
         f"it by {number(chance, 2)}. A tenth of that counts as controlled."
     )

@@ -108,7 +108,7 @@ def complicated(content):
 
 
 def alike(content):
-    """LS-DEM beside rigid and viscoelastic blocks in contact dynamics."""
+    """LS-DEM with rigid and viscoelastic blocks in contact dynamics."""
     words, few, apart, beyond = [], [], 0, 0
     for case in content.cases.values():
         for other in (model for model in (_RIGID, _VISCOELASTIC) if model in content.study["models"]):
@@ -127,14 +127,14 @@ def alike(content):
             }
             peaks = [number(1e3 * float(case.responses[model].envelope["peak"].sel(at))) for model in both]
             words.append(
-                f"{case.name}, {model_label(other)} {number(1e3 * distance)} mm beside {number(1e3 * widest)} mm, "
+                f"{case.name}, {model_label(other)} {number(1e3 * distance)} mm with {number(1e3 * widest)} mm, "
                 f"median peaks at the top {' and '.join(peaks)} mm"
             )
     if not words:
         return None, "The samples are too few to hold the models against each other."
     fewer = f" Of fewer than {SURE_FROM} samples, and not judged: {'; '.join(few)}." if few else ""
     return not apart, (
-        "Energy distance of an ensemble of NSCD from that of LS-DEM, beside the mean difference of two samples of "
+        "Energy distance of an ensemble of NSCD from that of LS-DEM, next to the mean difference of two samples of "
         f"the wider of both, means over times and the markers of all blocks: {'; '.join(words)}. Alike counts where "
         "the distance is the smaller one: two equal normal distributions may be about two standard deviations apart. "
         f"It is the larger one in {share_words(apart, len(words))} comparisons, and beyond that of samples "
@@ -181,7 +181,7 @@ def _ordered(content, found, pairs, words, written, ceiling=np.inf):
         )
         > 1
     ):
-        return None, "The cases are shaken differently, which the structures cannot be told from."
+        return None, "The cases are shaken differently, which the structures cannot be distinguished from."
     full = sorted({less for less, _ in pairs if found[less][0] >= ceiling})
     pairs = [pair for pair in pairs if pair[0] not in full]
     larger = sum(found[more][1] > found[less][2] for less, more in pairs)

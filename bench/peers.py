@@ -1,4 +1,4 @@
-"""Other people's programs, in an environment of their own that ``make peers`` makes: found, asked and read.
+"""Other people's programs, in an environment of their own that ``make peers`` makes: found, requested and read.
 
 A peer runs in its own process under its own Python, which knows nothing of blockshake: it is handed a
 JSON file and writes an npz file.

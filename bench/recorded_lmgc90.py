@@ -1,4 +1,4 @@
-"""Record of LMGC90 beside blockshake, kept in a file because few have the program."""
+"""Record of LMGC90 with blockshake, kept in a file because few have the program."""
 
 import datetime
 import json

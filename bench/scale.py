@@ -107,7 +107,7 @@ def _samples(folder, samples, batch):
     return [
         (study, "1,000 jobs planned, CPU s" if samples == 10_000 else "jobs planned, CPU s", jobs.cpu, None),
         (study, "jobs planned, MiB", jobs.memory, _MOST_MEMORY),
-        (study, "beside the simulation, CPU s a sample", overhead, _MOST_OVERHEAD),
+        (study, "next to the simulation, CPU s a sample", overhead, _MOST_OVERHEAD),
         (study, "all other rules, CPU s a sample", after / samples, _MOST_OVERHEAD),
         *((study, f"`{rule}`, MiB", cost.memory, _MOST_MEMORY) for rule, cost in spent.items()),
         (study, "HTML, MB", (folder / "reports/scale.html").stat().st_size / 1e6, _MOST_HTML),

@@ -18,7 +18,7 @@ import yaml
 G = 9.80665  # m/s2
 MASS = 353.0  # kg, of either rock as weighed
 RATE = 200.0  # Hz
-CROSSOVER = 1.0  # Hz, below which the displacement says more than the accelerometer
+CROSSOVER = 1.0  # Hz, below which the displacement states more than the accelerometer
 MOVES, AROUND = 0.2, 2.0  # m/s2 at which a motion begins and ends to count, and s before and after
 
 

@@ -2,7 +2,7 @@
 
 ``python examples/own_campaign.py [FOLDER]`` (some minutes). The files stay in FOLDER, ``own-campaign`` by default. The
 readings are made up here by a simulation in which a force of -1.5 kN pushes the upper block, and stand for those that
-you have. The diagnosis is not told of the force.
+you have. The diagnosis is unknown of the force.
 """
 
 import shutil

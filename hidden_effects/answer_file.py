@@ -1,4 +1,4 @@
-"""The part of a verdict that is scored: what any program may write of a campaign, beside this one's own verdicts."""
+"""The part of a verdict that is scored: what any program may write of a campaign, with this one's own verdicts."""
 
 from pathlib import Path
 from typing import Literal
@@ -23,7 +23,7 @@ class Interval(Part):
     upper: Finite
 
 
-class Form(Part):
+class LoadShape(Part):
     """A cause that no effect of the registry is."""
 
     form: str = Field(
@@ -38,7 +38,7 @@ class Answer(Part):
 
     decision: Literal["none", "named", "ambiguous", "combination", "unknown"]
     causes: tuple[str, ...] = Field((), description="effects of the registry")
-    outside: Form | None = Field(None, description="a cause that no effect of the registry is")
+    outside: LoadShape | None = Field(None, description="a cause that no effect of the registry is")
     parameters: dict[str, dict[str, Interval]] = Field(
         default_factory=dict, description="by effect and parameter"
     )
@@ -46,7 +46,7 @@ class Answer(Part):
         default_factory=dict, description="by effect: {body: name}, {joint: [lower, upper]} or {marker: name}"
     )
     places: dict[str, tuple[str, ...]] = Field(
-        default_factory=dict, description="by effect, all places that cannot be told from it"
+        default_factory=dict, description="by effect, all places that cannot be distinguished from it"
     )
     odds: dict[str, Finite] = Field(
         default_factory=dict, description="by cause: 0 of the most probable of each part, as a logarithm"

@@ -1,4 +1,4 @@
-"""One verdict beside its truth: named, asserted, placed and sized, and whether the tests could show it."""
+"""One verdict next to its truth: named, asserted, placed and sized, and whether the tests could show it."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -38,7 +38,7 @@ class Scored:
 
     @property
     def unseen(self):
-        """Whether a cause from outside moves no marker by five standard deviations beside a twin without it."""
+        """Whether a cause from outside moves no marker by five standard deviations next to a twin without it."""
         moved = self.truth.get("moved")
         return moved is not None and moved < LEAST_MOVED
 
@@ -68,7 +68,7 @@ class Scored:
 
     @property
     def form(self):
-        """Form from outside that the verdict says, or None."""
+        """Form from outside that the verdict states, or None."""
         return self.verdict.outside.form if self.verdict.outside else None
 
     @property
@@ -88,7 +88,7 @@ class Scored:
 
     @property
     def asserted(self):
-        """Number of causes that the verdict says act at once: the leaders of its parts, and faults of sensors."""
+        """Number of causes that the verdict states act at once: the leaders of its parts, and faults of sensors."""
         odds = self.verdict.odds
         if self.verdict.decision == "none":
             return 0
@@ -113,13 +113,13 @@ class Scored:
 
     @property
     def called_unknown(self):
-        """Whether a cause from outside is called unknown; a rope also where it is said beside a stop."""
+        """Whether a cause from outside is called unknown; a rope also where it is said next to a stop."""
         said = self.cause["name"] == _ROPE and self.holds(_ROPE) and set(self.verdict.causes) == {_STOP}
         return self.answer == "unknown" or (said and self.verdict.decision == "ambiguous")
 
     @property
     def can_be_seen(self):
-        """Whether an effect is larger than what the verdict says these tests would have shown.
+        """Whether an effect is larger than what the verdict states these tests would have shown.
 
         The limit is of the smallest at the true place, from the rows before any cause was looked for; a verdict states
         none of faults of sensors, which count as seen. A stop must be reached in an open test as well.
@@ -150,7 +150,7 @@ class Scored:
 
     @property
     def placed(self):
-        """Whether the true place is the one that is said, or among those that cannot be told from it."""
+        """Whether the true place is the one that is said, or among those that cannot be distinguished from it."""
         place, name = self.cause["place"], self.cause["name"]
         if name in OUTSIDE:
             return any(_is_there(said, place) for said in self.verdict.outside.places)

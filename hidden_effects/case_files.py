@@ -27,7 +27,7 @@ Seed = Annotated[int, Field(strict=True, ge=0)]
 
 
 class PlannedCase(Strict):
-    """A case to be made; its name says nothing of what is hidden."""
+    """A case to be made; its name states nothing of what is hidden."""
 
     name: str
     seed: Seed

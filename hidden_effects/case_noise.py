@@ -30,7 +30,7 @@ def add_noise(test, noise, seed, number):
     noise : dict
         From `true_noise`.
     seed, number : int
-        Of the case and of the test.
+        The case and of the test.
     """
     generator = np.random.default_rng([seed, _STREAM, number])
     exact = test["marker_displacement"].to_numpy()

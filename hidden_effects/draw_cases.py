@@ -2,7 +2,7 @@
 
 ``python hidden_effects/draw_cases.py --seed 1759261812 --output hidden_effects/seeds.yaml`` writes the sealed list. The
 number is that of the commit in which the laboratories joined, 68dc3474: nobody chose it by an answer. Another number
-gives another list of the same make-up. A case's name says nothing of what is hidden in it.
+gives another list of the same make-up. A case's name states nothing of what is hidden in it.
 """
 
 import argparse
@@ -39,7 +39,7 @@ _GAINED = {"two-blocks", "three-blocks", "four-blocks", "configuration-1", "tril
 _FAULTS = {name for name, effect in EFFECTS.items() if effect.acts == "observation"}
 HEAD = """\
 # Drawn by hidden_effects/draw_cases.py --seed {seed}. Every effect of the registry at two sizes and every form from
-# outside in every laboratory, pairs of causes, and clean cases. A case's name says nothing of what is hidden in it;
+# outside in every laboratory, pairs of causes, and clean cases. A case's name states nothing of what is hidden in it;
 # what is drawn follows from its seed alone.{sealed}
 """
 SEALED = """
@@ -49,7 +49,7 @@ SEALED = """
 
 
 def draw_cases(seed):
-    """Cases of a list as mappings, in an order that says nothing.
+    """Cases of a list as mappings, in an order that states nothing.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def as_text(cases, seed, sealed):
 
 
 def main(arguments):
-    """Write a list, as the command line says."""
+    """Write a list, as the command line states."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--output", type=Path, required=True)

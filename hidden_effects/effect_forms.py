@@ -224,7 +224,7 @@ def _base_compliance(experiment, values, place):
     return replace(experiment, structure=structure.with_mapping(mapping))
 
 
-# by name: what the form does to the solver beside the experiment
+# by name: what the form does to the solver next to the experiment
 FORM_NUMERICS = {"impact-restitution": {"ls_dem.shear_damping_ratio": 0.02}}
 # by name: what it does, and the change of an experiment
 FORMS = {

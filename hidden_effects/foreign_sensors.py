@@ -58,9 +58,9 @@ def read(test, sensors, seed, number):
     test : xarray.Dataset
         As in a campaign's test file.
     sensors : dict
-        Of `true_sensors`.
+        `true_sensors`.
     seed, number : int
-        Of the case, and of the test: gains are those of the case, noise is that of the test.
+        For the case, and of the test: gains are those of the case, noise is that of the test.
     """
     gains = np.random.default_rng([seed, _STREAM, 0])
     generator = np.random.default_rng([seed, _STREAM, 1 + number])
@@ -80,7 +80,7 @@ def read(test, sensors, seed, number):
     scale = 1.0 + sizes["channel"] * gains.standard_normal(exact.shape[1])
     exact = exact * scale + _OFFSET * gains.standard_normal(exact.shape[1])
     step = float(np.diff(test["time_acc"].to_numpy()[:2])[0])
-    # a channel grows with what it feels beside gravity
+    # a channel grows with what it feels with gravity
     test["accelerometer"].values[:] = _seen(
         exact[..., None], sensors["channel"], ACCELEROMETER_NOISE, step, generator, exact[:1, :, None]
     )[..., 0]

@@ -55,7 +55,7 @@ def block_task(
     duration : float
         [s]
     acceleration, pitch : float or float64 array, shape (n_steps,)
-        Of the table along x [m/s2] and about y [rad].
+        The table along x [m/s2] and about y [rad].
     box : tuple of float
         Edges of a block [m].
     friction : float

@@ -65,7 +65,7 @@ def make_case(
     Parameters
     ----------
     seed : int
-        Of everything that is drawn.
+        Everything that is drawn.
     names : sequence of str
         Effects of the registry and causes from `OUTSIDE`, which act in this order; none of a clean case.
     size : str or None
@@ -121,7 +121,7 @@ def make_case(
 
 
 def _laboratory(laboratory, structure, seed, hollow):
-    """Truth of a case in a laboratory beside its causes, and its tests by plan, causes and largest tilt."""
+    """Truth of a case in a laboratory next to its causes, and its tests by plan, causes and largest tilt."""
     if laboratory == "mujoco":
         true = mujoco_case.truth(structure, seed)
         tests = mujoco_case.tests
@@ -144,7 +144,8 @@ def _seen(test, true, seed, number):
 
 
 def _moved(shaken, done, causes, exact):
-    """How far causes from outside move a marker beside a twin without them: the most in open tests, over its noise [1].
+    """How far causes from outside move a marker next to a twin without them: the most in open tests, over its noise
+    [1].
 
     None without such a cause.
     """

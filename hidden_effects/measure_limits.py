@@ -64,7 +64,7 @@ def _found(folder, structure, job):
 
 
 def main(arguments):
-    """Make, diagnose and count, as the command line says."""
+    """Make, diagnose and count, as the command line states."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--plan", type=Path, required=True, help="of `blockshake plan-campaign`")
     parser.add_argument("--structure", default="two-blocks", help="file of `structures`, without its suffix")

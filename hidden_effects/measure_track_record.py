@@ -191,7 +191,7 @@ def _diagnose(results, case):
 
 
 def main(arguments):
-    """Make, diagnose and score the plan, as the command line says."""
+    """Make, diagnose and score the plan, as the command line states."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, default=ROOT / "results" / "hidden-effects")
     parser.add_argument("--seeds", type=Path, default=SEEDS, help="the plan")

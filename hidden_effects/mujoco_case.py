@@ -38,7 +38,7 @@ _MOST_TILT = 0.4  # rad: a block that tilts farther falls
 
 
 def truth(structure, seed):
-    """Truth of a case beside its causes: the scatter of its blocks and joints, and the table."""
+    """Truth of a case next to its causes: the scatter of its blocks and joints, and the table."""
     friction, density = scattered_blocks(structure, seed)
     return {"model": "mujoco", "friction": friction, "density": density, "table": true_table(seed)}
 
@@ -161,7 +161,7 @@ def describe_test(task, motion, duration, places, most_tilt):
     ----------
     task : dict
     motion : GroundMotion
-        Of the table.
+        The table.
     duration : float
         [s]
     places : dict of str to float64 array, shape (3,)
@@ -198,7 +198,7 @@ def hide(task, cause, structure, motions):
         As of `case_truth.true_causes`.
     structure : Structure
     motions : list of GroundMotion
-        Of the tests.
+        The tests.
     """
     name, values, place = cause["name"], cause["values"], cause["place"]
     if name in OUTSIDE:
@@ -293,7 +293,7 @@ def _push(task, cause, structure):
 
 
 def _blow(task, cause, structure):
-    """Half a sine wave whose impulse changes the mass's speed by what is asked."""
+    """Half a sine wave whose impulse changes the mass's speed by what is requested."""
     own = cause["values"]
     phase = np.linspace(0.0, 1.0, 21)
     peak = own["side"] * own["speed"] * acting_mass(structure, cause) * np.pi / (2.0 * own["length"])
@@ -448,7 +448,7 @@ def exact_test(run, lag, creep, offset):
     ----------
     run : ExactRun
     lag : float
-        Of the markers' clock [s].
+        The markers' clock [s].
     creep, offset : dict of str to array, shape (3,)
         By marker: drift of its zero [m/s], and where it sits off its stated place [m].
     """

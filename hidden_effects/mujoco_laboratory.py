@@ -6,7 +6,7 @@ a JSON file of plain numbers, as `mujoco_task.py` writes it, RESULT an npz file 
 ``N-pose`` (n, n_bodies, 7): place of each body's middle [m] and unit quaternion (w, x, y, z), every `EVERY` steps from
 the start of the shaking on, in the inertial frame; ``N-force`` (n_steps, n_sensors, 3): specific force of each
 accelerometer in the body's axes, mean of each step [m/s2]; ``N-factor``: by which the motion was made smaller so that
-no block tilts farther than is asked; ``N-tilt``: largest tilt [rad]; ``N-deepest``: largest penetration [m].
+no block tilts farther than is requested; ``N-tilt``: largest tilt [rad]; ``N-deepest``: largest penetration [m].
 
 The table rests and gravity shakes, ``(-a(t), 0, -g - a_z(t))``: the same mechanics in the table's frame. A table that
 pitches adds the forces of a rotating frame.

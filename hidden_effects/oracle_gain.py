@@ -82,7 +82,7 @@ def response_gains(folder, truth, verdict, findings, store):
     Parameters
     ----------
     folder : path
-        Of the campaign.
+        The campaign.
     truth : dict
     verdict : Verdict
         Its ``extension`` is what is proposed, unless it gains nothing on the tests to select by.

@@ -193,7 +193,7 @@ def _loose_weight(experiment, cause, start):
 
 
 def _broken_edge(experiment, cause, start):
-    """Edges of a block, and of those beside it across the shaking, on which it would stand otherwise."""
+    """Edges of a block, and of those with it across the shaking, on which it would stand otherwise."""
     file = experiment.structure.file
     bodies = {body.name: body for body in file.bodies}
     at = bodies[cause["place"]["body"]].position

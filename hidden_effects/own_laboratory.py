@@ -18,7 +18,7 @@ _TRIES = 12
 
 
 def truth(structure, seed, hollow, unusual):
-    """Truth of a case beside its causes: model, numerics, parameters, table."""
+    """Truth of a case next to its causes: model, numerics, parameters, table."""
     parameters, wider = true_parameters(structure, seed)
     if unusual:
         model, time_step, numerics, more = unusual_numerics(structure, seed)
@@ -39,7 +39,7 @@ def tests(structure, plan, causes, true, seed, most_tilt):
     test : xarray.Dataset
         As in a campaign's test file.
     scale : float
-        Of the motion: the plan's, or less where a block would tilt farther than ``most_tilt`` [rad].
+        For the motion: the plan's, or less where a block would tilt farther than ``most_tilt`` [rad].
     facts : dict
         ``status``, ``end_time`` and ``tilt`` of the run.
     """

@@ -70,7 +70,7 @@ def make_track_record(scored, plan):
 
 
 def main(arguments):
-    """Score a finished run of the plan, as the command line says."""
+    """Score a finished run of the plan, as the command line states."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--results", type=Path, required=True, help="folder of the cases and their verdicts")
     parser.add_argument("--seeds", type=Path, default=SEEDS, help="the plan")

@@ -68,11 +68,11 @@ def _of_all(scored, clean):
             "one name, and it is wrong: of all cases", [case.answer == "wrong" for case in scored], 0.02, _MOST
         ),
         "false_beside": _share(
-            "a cause that is not there is asserted beside a true one: of all cases with a cause",
+            "a cause that is not there is asserted next to a true one: of all cases with a cause",
             [0 < case.held < case.asserted for case in scored if case.causes], 0.03, _MOST,
         ),
         "unseen": _share(
-            "a cause from outside moves no marker by five standard deviations beside a twin without it: counted apart",
+            "a cause from outside moves no marker by five standard deviations next to a twin without it: counted apart",
             [case.unseen for case in scored if case.truth.get("moved") is not None],
         ),
     }  # fmt: skip
@@ -100,7 +100,7 @@ def _of_effects(known):
         ),
         "exact_large_alone": _share("the same, named alone", [case.answer == "right" for case in large]),
         "location": _share(
-            "the place is right, or among those that cannot be told apart, where the truth is held",
+            "the place is right, or among those that cannot be distinguished, where the truth is held",
             [case.placed for case in held if case.cause["place"]], 0.95,
         ),
         "sizes_hold": _share("an interval of 90 % holds the true size where it is rightly named", covered, 0.85),
@@ -126,7 +126,7 @@ def _of_outside(outside):
             [lateness <= LATE for lateness in late], 0.9,
         ),
         "outside_block": _share(
-            "its block is right, or among those that cannot be told apart, where the form is right",
+            "its block is right, or among those that cannot be distinguished, where the form is right",
             [case.placed for case in described], 0.95,
         ),
     }  # fmt: skip

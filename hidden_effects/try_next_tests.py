@@ -16,7 +16,7 @@ from blockshake.diagnosis.answer.decide import decide
 from blockshake.diagnosis.answer.next_test import readings_of_cause
 from blockshake.diagnosis.answer.static_tests import expected_readings, static_tests
 from blockshake.diagnosis.answer.thresholds import ODDS
-from blockshake.diagnosis.evidence.seen_campaign import see_campaign
+from blockshake.diagnosis.evidence.reconstructed_campaign import reconstruct_campaign
 from blockshake.effects.registry import EFFECTS
 from blockshake.files import load_json
 from blockshake.geometry.structure import load_structure
@@ -58,7 +58,7 @@ def made_cases(folder):
 
 def tried(case):
     """Rows of words, promised share and made share, of every static test that is advised on a case."""
-    seen = see_campaign(load_campaign(case / "campaign")).tests
+    seen = reconstruct_campaign(load_campaign(case / "campaign")).tests
     truth = {one["name"]: one for one in load_json(case / "truth" / "truth.json")["causes"]}
     for part in decide(seen).decision.parts:
         held = [number for number, cause in enumerate(part.causes) if cause.name in truth]

@@ -155,7 +155,7 @@ def three():
 
 @pytest.fixture(scope="session")
 def clean_tests(three):
-    """Sound sensors: coloured noise, gaps, outliers, offsets, markers within 1 mm."""
+    """Faultless sensors: coloured noise, gaps, outliers, offsets, markers within 1 mm."""
     from synthetic_campaigns import make_tests
 
     return make_tests(

@@ -167,7 +167,7 @@ def test_the_comparison_with_yade_skips_where_there_is_none(tmp_path):
 
 @pytest.mark.parametrize("peer", ["lmgc90", "mujoco"])
 def test_a_comparison_with_a_peer_skips_where_there_is_none(tmp_path, peer):
-    # the program's own folder, copied: beside it there is no environment of the peers
+    # the program's own folder, copied: with it there is no environment of the peers
     for program in BENCH.glob("*.py"):
         (tmp_path / "bench").mkdir(exist_ok=True)
         (tmp_path / "bench" / program.name).write_text(program.read_text())

@@ -15,12 +15,12 @@ from blockshake import jit
 WRITTEN_FOR = "0.68.1"
 
 
-@jit.borrowing_kernel
+@jit.kernel_without_allocation
 def _twice(values, index):
     return 2.0 * values[index]
 
 
-@jit.separate_kernel
+@jit.kernel_without_aliasing
 def _shifted_into(values, out):
     for index in range(values.size):
         out[index] = values[index] + 1.0

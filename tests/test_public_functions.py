@@ -64,7 +64,7 @@ def test_a_motion_of_arrays_is_that_of_their_file(table, tmp_path):
     ("arrays", "words"),
     [
         ({"time_s": TIME, "acceleration_x": SINE[1:]}, "arrays: .* two numbers, all of one length"),
-        ({"time_s": TIME}, "arrays: expected at least one column of motion beside time_s"),
+        ({"time_s": TIME}, "arrays: expected at least one column of motion with time_s"),
         ({"time_s": TIME, "acceleration_u": SINE}, "arrays: column 'acceleration_u': expected one of"),
         ({"time_s": TIME, "acceleration_x": ["a"] * 200}, "arrays: expected arrays of at least two numbers"),
         ({"time_s": TIME[::-1], "acceleration_x": SINE}, "arrays: row 1, time_s: expected times that increase"),

@@ -9,7 +9,7 @@ import pytest
 from blockshake import run_diagnosis
 from blockshake.cli import main
 from blockshake.diagnosis.answer.decision import Estimate
-from blockshake.diagnosis.verdict.ladder import NOTHING, ONE_OF, PROBABLE, UNKNOWN
+from blockshake.diagnosis.verdict.grade import NOTHING, ONE_OF, PROBABLE, UNKNOWN
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE
 from blockshake.own_files import run_workflow

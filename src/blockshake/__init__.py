@@ -1,6 +1,6 @@
 """blockshake: how stacks of heavy blocks behave in an earthquake, and how sure we are.
 
-The same as the command line, as functions. They are loaded when first asked for, so that a rule that only draws a
+The same as the command line, as functions. They are loaded when first requested, so that a rule that only draws a
 figure compiles no solver.
 """
 

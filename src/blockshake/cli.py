@@ -18,8 +18,9 @@ from blockshake.simulation.models import MODELS
 
 NUMERICAL_FAILURE = 3
 _IN_A_FOLDER = (
-    "Works in results, reports and logs of the current folder{}, alone: a second study or diagnosis there says so and "
-    "ends, one in another folder runs beside it. What was stopped goes on where it was."
+    "Works in results, reports and logs of the current folder{}, alone: a second study or diagnosis there states it "
+    "and "
+    "ends, one in another folder runs with it. What was stopped goes on where it was."
 )
 # of arguments that have another name
 _OPTIONS = {"parameters": "--set", "channels": "--column", "columns": "--column", "options": "options"}

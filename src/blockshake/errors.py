@@ -8,7 +8,7 @@ _LONGEST = 1000  # characters of a line that someone reads
 
 
 class Argument(str):
-    """Name of a function's argument at fault, the place of an `InputError`; a command line says its option."""
+    """Name of a function's argument at fault, the place of an `InputError`; a command line states its option."""
 
 
 class InputError(ValueError):

@@ -20,7 +20,7 @@ from blockshake.interrupts import delayed_interrupts
 AnyPath = str | os.PathLike[str]
 PACKAGE = Path(__file__).parent
 _INSTALLED = PACKAGE / "shipped"
-# what ships beside the package: a checkout's own folders, or the copy of them in an installed package
+# what ships next to the package: a checkout's own folders, or the copy of them in an installed package
 HOME = _INSTALLED if _INSTALLED.is_dir() else PACKAGE.parents[1]
 MADE_ANEW = "expected the {} file that an earlier job made; delete it, and the same command makes it anew"
 # no file of this kind comes near; a few lines of aliases of aliases would grow beyond any memory
@@ -253,7 +253,7 @@ def check_past(path):
     Raises
     ------
     InputError
-        Names the file and its time, and says how to set it.
+        Names the file and its time, and states how to set it.
     """
     time = os.stat(path).st_mtime
     if time > datetime.now().timestamp() + _SKEW:
@@ -292,7 +292,7 @@ def _nearest_folder(path):
 
 @contextlib.contextmanager
 def replacing(path):
-    """Temporary path beside ``path`` that takes its place when the block ends well.
+    """Temporary path next to ``path`` that takes its place when the block ends well.
 
     A reader sees the whole old file or the whole new one; a failed or killed writer leaves the old one.
 
@@ -316,7 +316,7 @@ def replacing(path):
         os.chmod(temporary, 0o666 & ~_umask())
         os.replace(temporary, path)
     except BaseException as error:
-        # asked before the temporary file gives its room back; errors of netCDF's library do not tell
+        # checked before the temporary file gives its room back; errors of netCDF's library do not tell
         no_room = isinstance(error, (OSError, RuntimeError)) and _is_full(path.parent)
         Path(temporary).unlink(missing_ok=True)
         if no_room:
@@ -336,7 +336,7 @@ def _is_full(folder):
 
 @contextlib.contextmanager
 def replacing_folder(folder):
-    """Temporary folder beside ``folder`` that takes its place when the block ends well; else nothing is left.
+    """Temporary folder next to ``folder`` that takes its place when the block ends well; else nothing is left.
 
     Raises
     ------

@@ -7,12 +7,12 @@ import threading
 
 @contextlib.contextmanager
 def held_interrupts(at_once=lambda: False):
-    """Context in which an interrupt is noted and not raised; its value is a function that says whether one came.
+    """Context in which an interrupt is noted and not raised; its value is a function that states whether one came.
 
     Parameters
     ----------
     at_once : callable
-        Says whether an interrupt is to be raised nevertheless.
+        Whether an interrupt is to be raised nevertheless.
 
     Notes
     -----

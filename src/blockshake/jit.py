@@ -214,10 +214,10 @@ inner_kernel = _inner(_nrt=True, pipeline_class=_part)
 # the kernels that it calls unless they say, as those above do, that they count. The code of a part is copied to where
 # it is called, because the tables of a run are hundreds of arguments, which a call would pass one by one.
 loop_kernel = numba.njit(**_OPTIONS, cache=True, _nrt=False, pipeline_class=_whole)
-borrowing_kernel = _inner(_nrt=False, forceinline=True, pipeline_class=_part)
-# The same where no array argument overlaps another one, which the compiler is told: loops over the lanes of packets,
+kernel_without_allocation = _inner(_nrt=False, forceinline=True, pipeline_class=_part)
+# The same where no array argument overlaps another one, which the compiler assumes: loops over the lanes of packets,
 # which are in two arrays, become vector instructions only so.
-separate_kernel = _inner(_nrt=False, forceinline=True, pipeline_class=_separate)
+kernel_without_aliasing = _inner(_nrt=False, forceinline=True, pipeline_class=_separate)
 # For what gives a view of an array to one of these: its statements stand in its place.
 inline_kernel = numba.njit(**_OPTIONS, inline="always", pipeline_class=_whole)
 

@@ -1,4 +1,4 @@
-"""The log of a job: what it says, warns and dies of; and the end of the command whose job failed."""
+"""The log of a job: messages, warnings and errors; and the end of the command whose job failed."""
 
 import contextlib
 import logging
@@ -35,9 +35,9 @@ class Reason(NamedTuple):
 def logging_to(path):
     """Write the block's log to a file.
 
-    Yields a function that says one line of progress, in the log and on the terminal. Python warnings and logging go to
-    the log; so does the traceback of an error, which is raised on, but for bad input: that ends the job with one line
-    and exit code 2. The last lines are the reason of a failure, see `read_reason`, and what the block cost in
+    Yields a function that prints one line of progress, in the log and on the terminal. Python warnings and logging go
+    to the log; so does the traceback of an error, which is raised on, but for bad input: that ends the job with one
+    line and exit code 2. The last lines are the reason of a failure, see `read_reason`, and what the block cost in
     time and CPU time [s]. The job ends with the command that started it.
     """
     end_with_command()

@@ -83,7 +83,7 @@ class Store(NamedTuple):
         return json.loads(path.read_bytes()[:-_SEAL])
 
     def dataset(self, words: str, unit: Unit):
-        """File of the Dataset of a run, simulated where the store has not got it; a line says how the run ended.
+        """File of the Dataset of a run, simulated where the store has not got it; a line states how the run ended.
 
         ``words``: which run it is.
         """

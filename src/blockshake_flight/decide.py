@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from blockshake.diagnosis.answer.answer import Rival, find_causes, share_of
+from blockshake.diagnosis.answer.answer import Alternative, find_causes, share_of
 from blockshake.diagnosis.answer.decide import chance, kind_of, probabilities
 from blockshake.diagnosis.answer.decision import Cause, Decision, Estimate, Part
 from blockshake.diagnosis.answer.size import FORM
@@ -21,7 +21,7 @@ from blockshake_flight.evidence import explain, explained_share, flight_rows
 from blockshake_flight.impacts import find_impacts, summary
 from blockshake_flight.inertia import seen_ratios
 from blockshake_flight.paths import fallen
-from blockshake_flight.posed_test import load_posed
+from blockshake_flight.tracked_test import load_tracked
 
 _NINETY = 1.645  # standard deviations
 _READINGS = "free flight"
@@ -36,16 +36,16 @@ class DecidedFlights(NamedTuple):
 
 def decide(campaign, files, without):
     """`DecidedFlights` of a campaign, see `CampaignKind`; of ``files`` none is read."""
-    return decide_flights(load_posed(campaign, list(campaign.open)), without)
+    return decide_flights(load_tracked(campaign, list(campaign.open)), without)
 
 
-def decide_flights(posed, without=()):
-    """Decide what the flights of some tests speak for.
+def decide_flights(tracked, without=()):
+    """Decide what the flights of some tests support.
 
     Parameters
     ----------
-    posed : PosedCampaign
-        Of open tests.
+    tracked : TrackedCampaign
+        Open tests.
     without : sequence of str
         Effects that are left out.
 
@@ -58,99 +58,104 @@ def decide_flights(posed, without=()):
     InputError
         No flight.
     """
-    arcs, broken = find_arcs(posed)
+    arcs, broken = find_arcs(tracked)
     if not arcs:
         raise InputError(
-            posed.structure.source, "tests",
-            f"expected tests in which {posed.name} flies for some readings; found {len(broken)} flights, none of "
+            tracked.structure.source, "tests",
+            f"expected tests in which {tracked.name} flies for some readings; found {len(broken)} flights, none of "
             "them smooth",
         )  # fmt: skip
-    impacts = find_impacts(posed, arcs)
-    rows = flight_rows(posed, arcs)
-    beside, sound, stages = rows, [], []  # fits of every stage, by falling gain
+    impacts = find_impacts(tracked, arcs)
+    rows = flight_rows(tracked, arcs)
+    conditional, nominal, stages = rows, [], []  # fits of every stage, by falling gain
 
     def needed(cause, known):
         return by_odds(cause) + share_of(known)
 
     def ranked(known):
-        nonlocal beside
+        nonlocal conditional
         if known:
             first = stages[-1][0]
-            beside = beside.beside(first, FORM if first.cause.name in FORMS else 0.0)
-        taken = {*without, *(one.cause for one in known), *(fit.cause.name for fit in sound)}
+            conditional = conditional.given(first, FORM if first.cause.name in FORMS else 0.0)
+        taken = {*without, *(one.cause for one in known), *(fit.cause.name for fit in nominal)}
         while fits := sorted(
-            (explain(beside, cause) for cause in CAUSES if cause.name not in taken), key=lambda fit: -fit.gain
+            (explain(conditional, cause) for cause in CAUSES if cause.name not in taken),
+            key=lambda fit: -fit.gain,
         ):
             first = fits[0]
-            if first.gain < needed(first.cause.name, known) or first.size >= first.cause.sound(posed):
+            if first.gain < needed(first.cause.name, known) or first.size >= first.cause.nominal_size(
+                tracked
+            ):
                 break
-            sound.append(first)
+            nominal.append(first)
             taken.add(first.cause.name)
-            beside = beside.beside(first, 0.0)
+            conditional = conditional.given(first, 0.0)
         stages.append(fits)
-        return [Rival(fit.cause.name, posed.name, fit.gain, fit.gain, (posed.name,)) for fit in fits]
+        return [
+            Alternative(fit.cause.name, tracked.name, fit.gain, fit.gain, (tracked.name,)) for fit in fits
+        ]
 
     groups = find_causes(ranked, needed)
     firsts = [fits[0] for fits in stages[: len(groups)]]
     hidden = [fit for fits in stages[len(groups) :] for fit in fits if fit.gain > by_odds(fit.cause.name)]
     alike = [
         [
-            rows.refitted(fit, [*sound, *(first for first in firsts if first is not own)])
+            rows.refitted(fit, [*nominal, *(first for first in firsts if first is not own)])
             for fit in fits[: len(group.rivals)]
         ]
         for group, fits, own in zip(groups, stages, firsts, strict=False)
     ]
-    parts = tuple(_part(posed, group, fits) for group, fits in zip(groups, alike, strict=True))
+    parts = tuple(_part(tracked, group, fits) for group, fits in zip(groups, alike, strict=True))
     causes = [fits[0] for fits in alike]
     share = explained_share(rows, causes) if causes else 0.0
-    names = [test.name for test in posed.tests]
-    mirrored = _gain_of_mirrored(posed, arcs, causes)
+    names = [test.name for test in tracked.tests]
+    mirrored = _gain_of_mirrored(tracked, arcs, causes)
     decision = Decision(
         decision=kind_of(parts),
         parts=parts,
         probabilities=probabilities(parts, without),
-        limits=_limits(posed, rows, share_of([group.rivals[0] for group in groups])),
+        limits=_limits(tracked, rows, share_of([group.rivals[0] for group in groups])),
         excluded_above={},
         p=min(1.0, sum(map(chance, parts))) if parts else 1.0,
-        where=f"free flight of {posed.name}" if groups else "no departure larger than chance",
+        where=f"free flight of {tracked.name}" if groups else "no departure larger than chance",
         tests=names,
         silent=(),
         n_rows=sum(map(len, rows.values)),
         impacts=impact_words(summary(impacts)),
-        cannot_see=_not_seen(posed, broken, alike, share, rows, hidden[:1], mirrored),
+        cannot_see=_not_seen(tracked, broken, alike, share, rows, hidden[:1], mirrored),
     )
-    return DecidedFlights(decision, _evidence(posed, rows, causes, impacts, broken, share))
+    return DecidedFlights(decision, _evidence(tracked, rows, causes, impacts, broken, share))
 
 
-def _gain_of_mirrored(posed, arcs, causes):
+def _gain_of_mirrored(tracked, arcs, causes):
     """How much better flights with rotations of the other hand are explained, by the first cause and a mass centre.
 
-    A point that is tracked beside the mass centre shows the hand: it circles with the rotations.
+    A point that is tracked next to the mass centre shows the hand: it circles with the rotations.
     """
-    beside = next(cause for cause in CAUSES if cause.name == "eccentricity")
-    taken = dict.fromkeys([*(fit.cause for fit in causes[:1]), beside])
+    conditional = next(cause for cause in CAUSES if cause.name == "eccentricity")
+    taken = dict.fromkeys([*(fit.cause for fit in causes[:1]), conditional])
 
     def gain(sign):
         turned = [replace(arc, rotation=sign[:, None] * arc.rotation * sign) for arc in arcs]
-        rows, found = flight_rows(posed, turned), 0.0
+        rows, found = flight_rows(tracked, turned), 0.0
         for cause in taken:
             fit = explain(rows, cause)
-            rows, found = rows.beside(fit, 0.0), found + fit.gain
+            rows, found = rows.given(fit, 0.0), found + fit.gain
         return found
 
     mirrors = [np.where(np.arange(3) == axis, -1.0, 1.0) for axis in arcs[0].axes if axis < 2]
     return max(map(gain, mirrors)) - gain(np.ones(3))
 
 
-def _part(posed, group, fits):
+def _part(tracked, group, fits):
     causes = tuple(
         Cause(
             name=fit.cause.name,
-            place={"body": posed.name},
-            places=(posed.name,),
+            place={"body": tracked.name},
+            places=(tracked.name,),
             gain=fit.gain,
             odds=group.odds[fit.cause.name],
-            parameters=_sizes(posed, fit),
+            parameters=_sizes(tracked, fit),
             members=(
                 {name: float(size) for (name, _), size in zip(fit.cause.sizes, fit.sizes, strict=True)},
             ),
@@ -161,7 +166,7 @@ def _part(posed, group, fits):
     return Part(readings=_READINGS, causes=causes, odds=group.odds, gains=group.gains)
 
 
-def _sizes(posed, fit):
+def _sizes(tracked, fit):
     """Sizes with intervals of 90 %; those of a form, which may be another one's, a tenth wider to either side."""
     found, outside = {}, fit.cause.name in FORMS
     for (name, unit), size, deviation in zip(
@@ -172,36 +177,36 @@ def _sizes(posed, fit):
             estimate=float(size), lower=float(size - half), upper=float(size + half), unit=unit
         )
     if fit.cause.name == "drag":
-        mass, one = float(posed.structure.mass[posed.body]), found["damping"]
+        mass, one = float(tracked.structure.mass[tracked.body]), found["damping"]
         found["rate"] = Estimate(
             estimate=one.estimate / mass, lower=one.lower / mass, upper=one.upper / mass, unit="1/s"
         )
     return found
 
 
-def _limits(posed, rows, more):
+def _limits(tracked, rows, more):
     """Sizes of effects of the registry along the filmed directions from which on they would have been named."""
     found = {}
     for cause in CAUSES:
         if cause.name not in EFFECTS:
             continue
         deviations = np.sqrt(np.diag(explain(rows, cause).covariance))
-        scale = cause.scale(posed)
+        scale = cause.scale(tracked)
         seen = deviations[deviations < 0.9 * scale]  # the others are not filmed
         if len(seen):
             # the gain of a size m: m^2 / (2 d^2) - ln(scale / d)
             needed = by_odds(cause.name) + more + np.log(scale / seen).sum()
             found[cause.name] = {
-                posed.name: max(float(np.sqrt(2.0 * needed) * seen.max()), cause.sound(posed))
+                tracked.name: max(float(np.sqrt(2.0 * needed) * seen.max()), cause.nominal_size(tracked))
             }
     return found
 
 
-def _not_seen(posed, broken, alike, share, rows, hidden, mirrored):
+def _not_seen(tracked, broken, alike, share, rows, hidden, mirrored):
     """Lines on what the poses do not show.
 
-    ``alike``: by cause, the fits that are not told apart; ``hidden``: the one that the share of the named ones hides,
-    or none; ``mirrored``: see `_gain_of_mirrored`.
+    ``alike``: by cause, the fits that are not distinguished; ``hidden``: the one that the share of the named ones
+    hides, or none; ``mirrored``: see `_gain_of_mirrored`.
     """
     lines = [
         f"{len(rows.arcs)} free flights lie {1e3 * rows.noise:.3g} mm about cubics, in the root mean square"
@@ -210,17 +215,17 @@ def _not_seen(posed, broken, alike, share, rows, hidden, mirrored):
         lines.append(
             f"{len(broken)} flights were left out: something other than the ground was hit, or the tracking slipped"
         )
-    silent = [test.name for test in posed.tests if test.name not in {arc.test for arc in rows.arcs}]
+    silent = [test.name for test in tracked.tests if test.name not in {arc.test for arc in rows.arcs}]
     if silent:
         lines.append(f"no free flight was read in {', '.join(silent)}")
     if alike:
         lines.append(f"the causes explain {100.0 * share:.0f} % of what the flights have beyond noise")
     lines += [
-        f"beside them {fit.cause.title} gains {fit.gain:.0f} nats, less than a tenth of what they gain, and is not "
+        f"with them {fit.cause.title} gains {fit.gain:.0f} nats, less than a tenth of what they gain, and is not "
         "named"
         for fit in hidden
     ]
-    lines.append(_inertia_words(seen_ratios(posed, rows.arcs)))
+    lines.append(_inertia_words(seen_ratios(tracked, rows.arcs)))
     if mirrored > by_odds("eccentricity"):
         lines.append(
             f"rotations of the other hand would explain the flights better, by {mirrored:.0f} nats: the signs of the "
@@ -230,10 +235,10 @@ def _not_seen(posed, broken, alike, share, rows, hidden, mirrored):
         if len(fits) > 1:
             lines.append(
                 "free flight does not tell these apart: "
-                + "; ".join(f"{fit.cause.title} ({_size_words(posed, fit)})" for fit in fits)
+                + "; ".join(f"{fit.cause.title} ({_size_words(tracked, fit)})" for fit in fits)
             )
         lines += [fit.cause.alias for fit in fits if fit.cause.alias]
-    if any(test.planar for test in posed.tests):
+    if any(test.planar for test in tracked.tests):
         lines.append("the motion was filmed in one plane: nothing across it is known")
     return tuple(lines)
 
@@ -250,8 +255,8 @@ def _inertia_words(ratios):
     )
 
 
-def _size_words(posed, fit):
-    return ", ".join(f"{name} {estimate_in_si(one)}" for name, one in _sizes(posed, fit).items())
+def _size_words(tracked, fit):
+    return ", ".join(f"{name} {estimate_in_si(one)}" for name, one in _sizes(tracked, fit).items())
 
 
 def impact_words(found):
@@ -274,14 +279,14 @@ def impact_words(found):
     return "; ".join(words)
 
 
-def _evidence(posed, rows, causes, impacts, broken, share):
+def _evidence(tracked, rows, causes, impacts, broken, share):
     """Mean acceleration and velocity of every flight, measured and explained, and all impacts."""
-    arcs, gravity = rows.arcs, posed.structure.file.gravity
+    arcs, gravity = rows.arcs, tracked.structure.file.gravity
     taken = [_mean_acceleration(arc, arc.position - fallen(arc, gravity)) for arc in arcs]
     explained = [
         sum(
             (
-                _mean_acceleration(arc, np.einsum("nkx,k->nx", fit.cause.paths(arc, posed), fit.sizes))
+                _mean_acceleration(arc, np.einsum("nkx,k->nx", fit.cause.paths(arc, tracked), fit.sizes))
                 for fit in causes
             ),
             np.zeros(3),
@@ -311,5 +316,5 @@ def _evidence(posed, rows, causes, impacts, broken, share):
 
 
 def _mean_acceleration(arc, path):
-    """Of a path, by the parabola through it, (3,) [m/s2]."""
+    """For a path, by the parabola through it, (3,) [m/s2]."""
     return 2.0 * np.polyfit(arc.time, path, 2)[0]

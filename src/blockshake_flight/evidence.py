@@ -17,7 +17,7 @@ _ROUNDS = 4  # of weighing the flights
 class FlightRows:
     """Rows of all flights, a block for each flight and filmed axis, and their likelihood."""
 
-    posed: object  # PosedCampaign
+    tracked: object  # PosedCampaign
     arcs: list  # of Arc
     values: list  # of float64 array, shape (n_rows,); positions less a free fall in air [m]
     noise: float  # of a coordinate [m]
@@ -31,30 +31,30 @@ class FlightRows:
         """Rows of a `FlightCause` at sizes 1: list of float64 array, shape (n_rows, n_sizes)."""
         return self.columns(lambda arc: cause.paths(arc, self.posed))
 
-    def beside(self, fit, share):
+    def given(self, fit, share):
         """The rows with a cause among the nuisances, whose form may leave a share of the path that it makes."""
         columns = self.of_cause(fit.cause)
         errors = [share**2 * np.outer(column @ fit.sizes, column @ fit.sizes) for column in columns]
         scales = np.full(len(fit.sizes), fit.cause.scale(self.posed))
-        wide = self.likelihood.beside(columns, scales, errors)
+        wide = self.likelihood.given(columns, scales, errors)
         return FlightRows(self.posed, self.arcs, self.values, self.noise, wide)
 
     def refitted(self, fit, others):
-        """A fit beside other fits, all sizes free together; its gain stays."""
+        """A fit given other fits, all sizes free together; its gain stays."""
         rows = self
         for other in others:
-            rows = rows.beside(other, 0.0)
+            rows = rows.given(other, 0.0)
         again = explain(rows, fit.cause)
         return FlightFit(fit.cause, fit.gain, again.sizes, again.covariance)
 
 
 @dataclass(frozen=True)
 class FlightFit:
-    """A cause beside the rows."""
+    """A cause next to the rows."""
 
     cause: object  # FlightCause
     gain: float  # logarithm of its evidence over that of none
-    sizes: np.ndarray  # float64 (n_sizes,); the likeliest ones
+    sizes: np.ndarray  # float64 (n_sizes,); the most probable ones
     covariance: np.ndarray  # float64 (n_sizes, n_sizes)
 
     @property
@@ -63,7 +63,7 @@ class FlightFit:
         return float(np.linalg.norm(self.sizes))
 
 
-def flight_rows(posed, arcs):
+def flight_rows(tracked, arcs):
     """`FlightRows` of the flights of a campaign.
 
     Notes
@@ -72,28 +72,31 @@ def flight_rows(posed, arcs):
     body, a touch of a guide. That rest therefore counts as three independent readings a flight and axis, at least of
     the usual size, so that flights that something else disturbs are worth less, for all causes alike.
     """
-    noise, values = noise_of(arcs), [left[:, 0] for left in _blocks(arcs, lambda arc: _left(arc, posed))]
-    small = _blocks(arcs, lambda arc: nuisances(arc, posed))
+    noise, values = noise_of(arcs), [left[:, 0] for left in _blocks(arcs, lambda arc: _left(arc, tracked))]
+    small = _blocks(arcs, lambda arc: nuisances(arc, tracked))
     whole = _blocks(
         arcs,
         lambda arc: np.concatenate(
-            [nuisances(arc, posed), *(cause.scale(posed) * cause.paths(arc, posed) for cause in CAUSES)],
+            [
+                nuisances(arc, tracked),
+                *(cause.scale(tracked) * cause.paths(arc, tracked) for cause in CAUSES),
+            ],
             axis=1,
         ),
     )
     variances = np.full(len(values), noise**2)
     for _ in range(_ROUNDS):
-        variances = _variances_beside(values, whole, variances, noise)
+        variances = _variances_given(values, whole, variances, noise)
     covariances = [variance * np.eye(len(value)) for variance, value in zip(variances, values, strict=True)]
     by_nuisance = [[rows[:, number] for rows in small] for number in range(small[0].shape[1])]
-    return FlightRows(posed, arcs, values, noise, from_rows(covariances, values, by_nuisance))
+    return FlightRows(tracked, arcs, values, noise, from_rows(covariances, values, by_nuisance))
 
 
-def _left(arc, posed):
+def _left(arc, tracked):
     """Path less that of the mass centre in air, (n, 1, 3) [m]."""
-    file = posed.structure.file
-    offset = np.array(file.bodies[posed.body].mass_offset)
-    known = fallen(arc, file.gravity) + air_drag(posed) * dragged_by_square(arc)[:, 0]
+    file = tracked.structure.file
+    offset = np.array(file.bodies[tracked.body].mass_offset)
+    known = fallen(arc, file.gravity) + air_drag(tracked) * dragged_by_square(arc)[:, 0]
     return (arc.position - known - np.einsum("nkx,k->nx", off_centre(arc), offset))[:, None]
 
 
@@ -102,8 +105,8 @@ def _blocks(arcs, paths):
     return [rows[:, :, axis] for arc in arcs for rows in [arc.free(paths(arc))] for axis in arc.axes]
 
 
-def _variances_beside(values, columns, variances, noise):
-    """Variances of a reading in each block, (n_blocks,), beside columns of standard normal amplitudes at their best."""
+def _variances_given(values, columns, variances, noise):
+    """Variances of a reading in each block, (n_blocks,), given columns of standard normal amplitudes at their best."""
     precision, target = np.eye(columns[0].shape[1]), np.zeros(columns[0].shape[1])
     for value, rows, variance in zip(values, columns, variances, strict=True):
         precision += rows.T @ rows / variance

@@ -14,13 +14,13 @@ from blockshake_flight.arcs import find_arcs
 from blockshake_flight.causes import CAUSES
 from blockshake_flight.evidence import FlightFit, flight_rows
 from blockshake_flight.inertia import OF_RATIOS, seen_ratios
-from blockshake_flight.posed_test import load_posed
 from blockshake_flight.replay import FlightModel, replay, start_arc
+from blockshake_flight.tracked_test import load_tracked
 
 _FRICTION = (0.03, 0.06, 0.1, 0.15, 0.22, 0.33, 0.5)
 _RESTITUTION = (0.0, 0.15, 0.3, 0.45, 0.6)
 _FINER = (0.75, 0.85, 1.0, 1.1, 1.25)  # times the best friction of these
-_BESIDE = (-0.1, -0.05, 0.0, 0.05, 0.1)  # beside the best restitution of these
+_STEPS = (-0.1, -0.05, 0.0, 0.05, 0.1)  # next to the best restitution of these
 _INERTIA = (0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4)  # times the moments of inertia
 _MOST = 60  # open tests that a model is fitted to
 _EARLY = 0.1  # s after the first flight
@@ -30,7 +30,7 @@ KINDS = (NOMINAL, RECALIBRATED, DISCREPANCY, EXTENDED)
 
 def measure_gain(campaign, decision, effort, files):
     """`CampaignGain` of a campaign, see `CampaignKind`; at every effort the same, and by no file."""
-    opened, sealed = (load_posed(campaign, list(tests)) for tests in (campaign.open, campaign.sealed))
+    opened, sealed = (load_tracked(campaign, list(tests)) for tests in (campaign.open, campaign.sealed))
     return flight_gain(opened, sealed, decision)
 
 
@@ -39,7 +39,7 @@ def flight_gain(opened, sealed, decision):
 
     Parameters
     ----------
-    opened, sealed : PosedCampaign
+    opened, sealed : TrackedCampaign
     decision : Decision
 
     Returns
@@ -80,7 +80,7 @@ def flight_gain(opened, sealed, decision):
         model, error, between, runs = _recalibrated(opened, fitted, replace(free, fits=fits), sizes)
         count += runs
         if error < best:
-            models[EXTENDED], best, told = model, error, between
+            models[EXTENDED], best, bounds = model, error, between
     scores = _scores(sealed, able, models)
     scores = scores.assign(
         friction=("kind", [models[kind].friction for kind in KINDS]),
@@ -93,7 +93,7 @@ def flight_gain(opened, sealed, decision):
     if ratios:
         size = float(np.exp(np.mean(models[EXTENDED].inertia)))
         most = ", the most that was tried" if round(size, 6) == max(sizes) else ""
-        words = f"{size:.2g} ({told[0]:.2g} to {told[1]:.2g}) times the stated moments of inertia"
+        words = f"{size:.2g} ({bounds[0]:.2g} to {bounds[1]:.2g}) times the stated moments of inertia"
         caveats.append(f"these paths are shortest apart with {words}{most}")
     if len(able) < len(sealed.tests):
         left = len(sealed.tests) - len(able)
@@ -104,14 +104,14 @@ def flight_gain(opened, sealed, decision):
     )
 
 
-def _nominal(posed):
-    bodies, friction = posed.structure.file, posed.structure.friction
-    (ground,) = np.flatnonzero(posed.structure.driven)
-    return FlightModel(float(friction[posed.body, ground]), float(bodies.nscd_restitution))
+def _nominal(tracked):
+    bodies, friction = tracked.structure.file, tracked.structure.friction
+    (ground,) = np.flatnonzero(tracked.structure.driven)
+    return FlightModel(float(friction[tracked.body, ground]), float(bodies.nscd_restitution))
 
 
 def _combinations(decision):
-    """Causes by which a model may be extended: of every part one that is not told from the likeliest."""
+    """Causes by which a model may be extended: one of each part, as plausible as the best."""
     parts = [[cause for cause in part.causes if cause.name in _ACTING] for part in decision.parts]
     by_name = {cause.name: cause for cause in CAUSES}
     for chosen in product(*(part for part in parts if part)):
@@ -121,13 +121,13 @@ def _combinations(decision):
         )
 
 
-def _fitted_tests(posed, arcs, most=_MOST):
+def _fitted_tests(tracked, arcs, most=_MOST):
     """At most some tests that can be replayed, spread evenly, with their first flights."""
-    able = [(test, arc) for test in posed.tests if (arc := start_arc(test, arcs)) is not None]
+    able = [(test, arc) for test in tracked.tests if (arc := start_arc(test, arcs)) is not None]
     return able[:: max(1, -(-len(able) // max(most, 1)))]
 
 
-def _recalibrated(posed, tests, model, sizes):
+def _recalibrated(tracked, tests, model, sizes):
     """The model with friction, restitution and inertia by a grid, refined once; its mean error, the interval of 90 %
     of the factor on its moments of inertia, one of the sizes, tests drawn again, and the number of runs."""
     errors = {}
@@ -137,7 +137,7 @@ def _recalibrated(posed, tests, model, sizes):
             friction, restitution, size = key
             inertia = tuple((np.array(model.inertia) + np.log(size)).tolist())
             tried = replace(model, friction=friction, restitution=restitution, inertia=inertia)
-            errors[key] = [np.nanmean(replay(posed, test, arc, tried).middle) for test, arc in tests], tried
+            errors[key] = [np.nanmean(replay(tracked, test, arc, tried).middle) for test, arc in tests], tried
         return errors[key][0]
 
     def mean(key):
@@ -150,16 +150,16 @@ def _recalibrated(posed, tests, model, sizes):
     between = np.quantile(np.array(sizes)[(weights @ by_size.T).argmin(axis=1)], (0.05, 0.95))
     finer = [
         (friction * factor, float(np.clip(restitution + step, 0.0, 1.0)), size)
-        for factor, step in product(_FINER, _BESIDE)
+        for factor, step in product(_FINER, _STEPS)
     ]
     best = min(finer, key=mean)
     return errors[best][1], mean(best), between, len(errors) * len(tests)
 
 
-def _scores(posed, tests, models):
+def _scores(tracked, tests, models):
     rows = []
     for test, arc in tests:
-        runs = [replay(posed, test, arc, models[kind]) for kind in KINDS]
+        runs = [replay(tracked, test, arc, models[kind]) for kind in KINDS]
         until = np.searchsorted(test.time[arc.first :], test.time[arc.last] + _EARLY)
         rows.append([
             [np.nanmean(run.middle), np.nanmean(run.middle[:until]), np.nanmean(run.turned)] for run in runs
@@ -187,14 +187,14 @@ def _contrasts(error):
     )
 
 
-def _row_gain(posed, arcs, decision, shift):
+def _row_gain(tracked, arcs, decision, shift):
     """Gain on the sealed flights' own rows, at the frozen sizes; flights drawn again."""
-    rows, by_name = flight_rows(posed, arcs), {cause.name: cause for cause in CAUSES}
+    rows, by_name = flight_rows(tracked, arcs), {cause.name: cause for cause in CAUSES}
     fits = [(by_name[part.causes[0].name], np.array(part.causes[0].amplitudes)) for part in decision.parts]
     paths = {
         RECALIBRATED: lambda arc: np.zeros((len(arc.time), 3)),
         EXTENDED: lambda arc: sum(
-            np.einsum("nkx,k->nx", cause.paths(arc, posed), sizes) for cause, sizes in fits
+            np.einsum("nkx,k->nx", cause.paths(arc, tracked), sizes) for cause, sizes in fits
         ),
         DISCREPANCY: lambda arc: 0.5 * arc.time[:, None] ** 2 * shift,
     }

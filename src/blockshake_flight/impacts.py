@@ -12,10 +12,10 @@ _TOGETHER = 0.05  # of the radius, within which the lowest vertices hit together
 _KINDS = {1: "corner", 2: "edge"}  # by vertices that hit together; more are a face
 _APART = 8.5  # readings between two flights, in which only one impact lies
 _OF_ONE = 0.7  # cosine between the change of spin and the moment of the impulse, below which several points were hit
-_SEEN = 0.1  # m/s of approach, below which a share of it is not told
+_SEEN = 0.1  # m/s of approach, below which a share of it is unknown
 _FLAT = 0.05  # rad off the flat pose, within which a face comes down
 _ON = 0.1  # of the radius, within which a body that comes down on a face has stayed on the ground before
-_TURNING = 0.5  # rad/s of approach, below which spin kept is not told
+_TURNING = 0.5  # rad/s of approach, below which spin kept is unknown
 _WINDOW = 5  # readings of each side, of a face that comes down without a flight
 
 
@@ -36,36 +36,38 @@ class FlightImpact(NamedTuple):
     kept: float
 
 
-def find_impacts(posed, arcs):
+def find_impacts(tracked, arcs):
     """All `FlightImpact` of a campaign that lie between two flights, and all faces that come down in rocking."""
     found = []
-    for test in posed.tests:
+    for test in tracked.tests:
         own = [arc for arc in arcs if arc.test == test.name]
         for before, after in pairwise(own):
-            impact = _between(posed, test, before, after)
+            impact = _between(tracked, test, before, after)
             if impact:
                 found.append(impact)
-        found += _rocking(posed, test)
+        found += _rocking(tracked, test)
     return found
 
 
-def _between(posed, test, before, after):
+def _between(tracked, test, before, after):
     """The impact between two flights; None where there may be several, or none."""
     step = float(np.median(np.diff(test.time)))
     start, end = test.time[before.last], test.time[after.first]
     if end - start > _APART * step:
         return None
     times = np.linspace(start, end, 50)
-    offset = np.array(posed.structure.file.bodies[posed.body].mass_offset)
-    arms = posed.vertices - offset
-    down = [_moved(posed, arc, offset, times - test.time[arc.first]) for arc in (before, after)]
-    heights = [(p[:, 2, None] + R[:, 2] @ arms.T - posed.ground).min(axis=1) for p, _, R, _ in down]
+    offset = np.array(tracked.structure.file.bodies[tracked.body].mass_offset)
+    arms = tracked.vertices - offset
+    down = [_moved(tracked, arc, offset, times - test.time[arc.first]) for arc in (before, after)]
+    heights = [(p[:, 2, None] + R[:, 2] @ arms.T - tracked.ground).min(axis=1) for p, _, R, _ in down]
     at = int(np.argmin(np.abs(heights[0] - heights[1])))
     (place, came, turned, spin), (_, left, _, spun) = ([one[at] for one in side] for side in down)
     height = place[2] + turned[2] @ arms.T
-    hit = height < height.min() + _TOGETHER * posed.radius
+    hit = height < height.min() + _TOGETHER * tracked.radius
     arm = turned @ arms[hit].mean(axis=0)
-    inertia = turned @ posed.structure.inertia[posed.body] @ turned.T / posed.structure.mass[posed.body]
+    inertia = (
+        turned @ tracked.structure.inertia[tracked.body] @ turned.T / tracked.structure.mass[tracked.body]
+    )
     restitution, ratio = impact_law(came, left, spin, spun, arm, inertia)
     if np.isnan(restitution):
         return None
@@ -82,14 +84,14 @@ def impact_law(came, left, spin, spun, arm, inertia):
     came, left, spin, spun : float64 arrays, shape (3,)
         Velocity of the mass centre [m/s] and angular velocity [rad/s], before and after, z up.
     arm : float64 array, shape (3,)
-        Of the contact from the mass centre [m].
+        The contact from the mass centre [m].
     inertia : float64 array, shape (3, 3)
         Over the mass, about the mass centre, world frame [m2].
 
     Returns
     -------
     restitution, ratio : float
-        Of the normal velocity of the contact; tangential over normal impulse [1]. NaN where the contact did not come
+        For the normal velocity of the contact; tangential over normal impulse [1]. NaN where the contact did not come
         down, or where the spin does not change as an impulse at the contact would change it.
     """
     approach, impulse = (came + np.cross(spin, arm))[2], left - came
@@ -109,28 +111,28 @@ def _kept(before, after):
     return float(before @ after / (before @ before)) if np.linalg.norm(before) > _TURNING else np.nan
 
 
-def _moved(posed, arc, offset, time):
+def _moved(tracked, arc, offset, time):
     """Place and velocity of the mass centre, rotation and spin of a flight at some times near one of its ends."""
     fit = np.polynomial.Polynomial
     centre = arc.position + arc.rotation @ offset
     paths = [fit.fit(arc.time, centre[:, axis], 2) for axis in range(3)]
-    path, momentum = tumbling(posed, arc)
+    path, momentum = tumbling(tracked, arc)
     end = 0 if time[-1] <= arc.time[0] else -1
-    spin = spins(posed, path, momentum)[end]
+    spin = spins(tracked, path, momentum)[end]
     rotation = (Rotation.from_rotvec((time - arc.time[end])[:, None] * spin) * path[end]).as_matrix()
     place = np.array([one(time) for one in paths]).T
     velocity = np.array([one.deriv()(time) for one in paths]).T
     return place, velocity, rotation, np.broadcast_to(spin, place.shape)
 
 
-def _rocking(posed, test):
+def _rocking(tracked, test):
     """Faces that come down while the body stays on the ground, returns to the same edge among them."""
-    heights = posed.heights(test).min(axis=1)
-    solid = posed.structure.solids[posed.structure.file.bodies[posed.body].shape]
+    heights = tracked.heights(test).min(axis=1)
+    solid = tracked.structure.solids[tracked.structure.file.bodies[tracked.body].shape]
     down = -test.rotation[:, 2] @ solid.polyhedron.normals.T
     face = np.nan_to_num(down, nan=-1.0).argmax(axis=1)
     tilt = np.arccos(np.clip(np.nan_to_num(down, nan=-1.0).max(axis=1), -1.0, 1.0))
-    low = np.nan_to_num(heights, nan=np.inf) < _ON * posed.radius
+    low = np.nan_to_num(heights, nan=np.inf) < _ON * tracked.radius
     for at in range(_WINDOW + 1, len(tilt) - _WINDOW - 1):
         around = slice(at - _WINDOW, at + _WINDOW + 1)
         if tilt[at] > _FLAT or tilt[at] > tilt[around].min() or not low[at - _WINDOW : at + 1].all():

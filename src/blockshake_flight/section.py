@@ -19,7 +19,7 @@ from blockshake_flight.figure import plot_accelerations, plot_errors
 _MODELS = {"nominal": GREY, "recalibrated": ORANGE, "discrepancy": GREEN, "extended": BLUE}
 TITLES = {cause.name: cause.title for cause in CAUSES}
 _WORDS = {
-    "nominal": "as the structure file says",
+    "nominal": "as in the structure file",
     "recalibrated": "recalibrated without a cause",
     "discrepancy": "recalibrated, with a steady acceleration without a name",
     "extended": "with the causes, recalibrated",
@@ -45,7 +45,7 @@ def answer_section(found):
     causes = [part.causes[0] for part in decision.parts]
     words = sentence_case(verdict.word)
     if causes:
-        acting = "; beside it ".join(cause_words(cause, TITLES[cause.name]) for cause in causes)
+        acting = "; with it ".join(cause_words(cause, TITLES[cause.name]) for cause in causes)
         words = sentence_case(f"{verdict.word}: {acting}")
     facts = tuple(map(_largest, causes[:1]))
     share = found.evidence.attrs["explained_share"]
@@ -137,7 +137,7 @@ def gain_section(found):
               for name, factor in (("early", 1e3), ("place", 1e3), ("turn", np.degrees(1.0)))),
         ))  # fmt: skip
     against = {
-        "the model as the structure file says": found.verdict.gain.nominal,
+        "the model as in the structure file": found.verdict.gain.nominal,
         "the recalibrated model": found.verdict.gain.recalibrated,
         "a steady acceleration without a name": found.verdict.gain.discrepancy,
     }

@@ -12,12 +12,12 @@ _ROUND = 1e-9  # of the inertia, within which it is alike about all axes
 
 
 @lru_cache(maxsize=4096)
-def tumbling(posed, arc):
+def tumbling(tracked, arc):
     """Rotations of a flight, and the angular momentum that is the same at all of them.
 
     Parameters
     ----------
-    posed : PosedCampaign
+    tracked : TrackedCampaign
     arc : Arc
 
     Returns
@@ -31,7 +31,7 @@ def tumbling(posed, arc):
     between neighbouring readings, weighted as in the slope of a line, so that no turn is too large; then start and
     momentum are those that leave the least, by the path's own derivative.
     """
-    inertia = posed.structure.inertia[posed.body]
+    inertia = tracked.structure.inertia[tracked.body]
     read = Rotation.from_matrix(arc.rotation)
     between = read[:-1].inv() * read[1:]  # in body axes
     rates = between.as_rotvec() / np.diff(arc.time)[:, None]
@@ -51,9 +51,9 @@ def tumbling(posed, arc):
     return _turned(Rotation.concatenate([start]), momentum[None], inertia, arc.time)[0], momentum
 
 
-def spins(posed, path, momentum):
+def spins(tracked, path, momentum):
     """Angular velocities of rotations with an angular momentum, (n, 3), world frame [rad/s]."""
-    inverse = np.linalg.inv(posed.structure.inertia[posed.body])
+    inverse = np.linalg.inv(tracked.structure.inertia[tracked.body])
     return _spins(path, np.tile(momentum, (len(path), 1)), inverse)
 
 

@@ -27,7 +27,7 @@ def _planar(structure, n, restitution):
     A bed is Winkler's (I. N. Psycharis and P. C. Jennings 1983, Rocking of slender rigid bodies allowed to uplift,
     Earthq. Eng. Struct. Dyn. 11, 57-76): k_theta = k_n I, k_x = k_s A, I and A of the flat. Gravity takes the
     weight on a joint times h from either block's stiffness. Dashpots gamma = 2 zeta sqrt(m_eff k_n / A) an area
-    beside the normal springs alone (docs/method.md).
+    next to the normal springs alone (docs/method.md).
     """
     area, second = LENGTH * WIDTH, WIDTH * LENGTH**3 / 12.0
     mass, inertia, h = structure.mass[1], structure.inertia[1][1, 1], HEIGHT / 2.0

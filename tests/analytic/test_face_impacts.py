@@ -23,7 +23,7 @@ from face_impacts import (
 from scipy.spatial.transform import Rotation
 
 from blockshake_flight.impacts import find_impacts
-from blockshake_flight.posed_test import PosedTest
+from blockshake_flight.tracked_test import TrackedTest
 
 
 def _rocker(half, height):
@@ -151,5 +151,5 @@ def test_a_square_that_lies_on_its_face_and_turns_does_not_come_down():
     time = np.arange(61) / RATE
     turned = np.column_stack([1e-4 * np.random.default_rng(42).normal(size=(len(time), 2)), 3.0 * time])
     place = np.tile([0.0, 0.0, HALF], (len(time), 1))
-    test = PosedTest("turning", time, place, Rotation.from_euler("xyz", turned).as_matrix(), planar=False)
+    test = TrackedTest("turning", time, place, Rotation.from_euler("xyz", turned).as_matrix(), planar=False)
     assert list(find_impacts(posed_square([test]), [])) == []

@@ -38,7 +38,7 @@ def test_a_face_that_may_pull_rebounds_with_c_res(restitution, spacing, make_str
     zeta = critical_part(restitution)
     # where it lets go the dashpot's force jumps once more
     assert found == pytest.approx(restitution, abs=2.0 * rebound_error(zeta, omega_dt))
-    # told apart from the cut force, by the half of what lies between
+    # distinguished from the cut force, by the half of what lies between
     assert abs(found - restitution) < 0.5 * (rebound(zeta) - restitution)
 
 

@@ -1,4 +1,4 @@
-"""Made-up tests beside made-up ensembles."""
+"""Made-up tests with made-up ensembles."""
 
 import numpy as np
 import xarray as xr

@@ -99,7 +99,7 @@ def moved_run(base, rocking=(), slips=(), edge=(0.38, 0.38), pitch=0.0, yaw=0.0,
 
 
 def seen(run, seed=0, marker_noise=0.0, **faults):
-    """Test as read, without noise unless asked for."""
+    """Test as read, without noise unless requested."""
     return observe(run, STRUCTURE, Instruments(marker_noise=marker_noise, **faults), seed)
 
 

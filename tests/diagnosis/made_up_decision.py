@@ -16,7 +16,7 @@ def made_up_cause(name, place, **changed):
 
 
 def made_up_part(*names):
-    """One part of the readings, and the causes that cannot be told apart in it."""
+    """One part of the readings, and the causes that cannot be distinguished in it."""
     causes = [
         made_up_cause(
             name, _PLACES.get(name, {}), gain=30.0 - number, odds=float(number),

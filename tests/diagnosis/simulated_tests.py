@@ -6,7 +6,7 @@ from blockshake.diagnosis.gain.extended_model import extended_experiment
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
 from blockshake.files import PACKAGE
-from blockshake.forces.seen.seen_test import see_test
+from blockshake.forces.seen.reconstructed_test import reconstruct_test
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Sensors
 from blockshake.measurement.motion.body_frame import without_outliers
@@ -25,7 +25,7 @@ def cause_of(name, place, values, when=None):
 
 
 def seen_tests(structure, motions, cause=None, change=None, duration=DURATION, model=RIGID, noise=None):
-    """`SeenTest` of every motion, by name with its scale, as the sensors of the structure read it.
+    """`ReconstructedTest` of every motion, by name with its scale, as the sensors of the structure read it.
 
     ``change`` of an experiment and the name of its test: what happens there, and the structure does not know.
     ``model`` has the solver, its parameters and the time step [s]. With ``noise``, `Instruments`, the noise is found
@@ -48,4 +48,4 @@ def seen_tests(structure, motions, cause=None, change=None, duration=DURATION, m
         known = [marker.name for marker in file.file.markers]
         tests[name] = without_outliers(readings.sel(marker=known), file)
     sensors = found_noise(tests, file, Sensors()) if noise else Sensors()
-    return [see_test(name, readings, file, sensors) for name, readings in tests.items()]
+    return [reconstruct_test(name, readings, file, sensors) for name, readings in tests.items()]

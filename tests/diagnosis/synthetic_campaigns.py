@@ -47,7 +47,7 @@ def make_run(structure, rocking, seed, pitch=0.0, survey=3e-4):
         Peak rotation of the stack about its base edges [rad]; slip and yaw grow with it.
     seed : int
     pitch : float
-        Of slab and stack about the slab's centre, over the table's acceleration [rad s2/m].
+        For slab and stack about the slab's centre, over the table's acceleration [rad s2/m].
     survey : float
         Standard deviation of the blocks' places at the start, against the structure [m].
     """

@@ -5,7 +5,7 @@ import pytest
 from simulated_tests import STRUCTURES
 
 from blockshake.diagnosis.answer.decide import decide
-from blockshake.diagnosis.evidence.seen_campaign import see_campaign
+from blockshake.diagnosis.evidence.reconstructed_campaign import reconstruct_campaign
 from blockshake.diagnosis.misfit.judged_test import judged_test, measured_histories
 from blockshake.diagnosis.misfit.misfit import misfit
 from blockshake.diagnosis.nominal.ensemble import nominal_members, simulate_members
@@ -14,7 +14,7 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.files import write_dataset
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign
-from blockshake.measurement.campaigns.starting_places import placed
+from blockshake.measurement.campaigns.initial_poses import placed
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.simulation.simulate import simulate
 from blockshake.store import Store
@@ -66,7 +66,7 @@ def campaigns(tmp_path_factory):
 
 
 def _misfit(campaign, folder):
-    """Misfit of the second test beside nominal models by contact dynamics."""
+    """Misfit of the second test with nominal models by contact dynamics."""
     planned = planned_test(campaign, "second", STRUCTURE)
     ensemble = simulate_members(nominal_members("second", planned, SOLVER, 9, 2), Store(folder, "test"))
     measured = measured_histories(campaign, ["second"], ())["second"]
@@ -91,7 +91,7 @@ def test_a_sealed_test_is_simulated_from_its_survey(campaigns):
 
 
 def test_joints_have_the_levers_of_the_places(campaigns):
-    seen = {test.name: test for test in see_campaign(campaigns[True]).tests}
+    seen = {test.name: test for test in reconstruct_campaign(campaigns[True]).tests}
     lower, upper = seen["second"].faces
     assert [face.name for face in seen["second"].faces] == [face.name for face in seen["first"].faces]
     # block-1 has its own width along its own edges, wherever it stands on the slab
@@ -105,14 +105,14 @@ def test_joints_have_the_levers_of_the_places(campaigns):
 
 
 def test_a_clean_campaign_names_nothing_from_the_surveyed_places_and_a_false_fault_without(campaigns):
-    clean = see_campaign(campaigns[True])
+    clean = reconstruct_campaign(campaigns[True])
     decision = decide(clean.tests).decision
     assert not clean.parity.findings
     assert not decision.parts
     assert not any(one.changes for one in decision.histories)
     assert "block-1 20 mm and 35 mrad" in clean.parity.gaps["second"][0]
     # a turn that nobody tells is taken for a marker that drifts
-    blind = see_campaign(campaigns[False])
+    blind = reconstruct_campaign(campaigns[False])
     assert {name.rpartition("-")[0] for finding in blind.parity.findings for name in finding.where} == {
         "block-1"
     }

@@ -7,7 +7,7 @@ from tiny_campaign import write_campaign
 from tiny_diagnosis import SOLVERS, TINY, a_formula, gain_of, simulate_open_tests
 
 from blockshake.diagnosis import steps
-from blockshake.diagnosis.verdict.ladder import NOT_JUDGED, rung
+from blockshake.diagnosis.verdict.grade import NOT_JUDGED, grade
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE, write_dataset, write_text
 from blockshake.store import load_made
@@ -99,5 +99,5 @@ def test_tests_that_are_too_short_end_in_a_verdict_that_says_so(tmp_path):
     assert decided.decision.decision == "none"
     assert decided.decision.tests == ()
     assert all("too short" in line for line in decided.decision.cannot_see)
-    assert rung("none", decided.decision, False, None).word == NOT_JUDGED
+    assert grade("none", decided.decision, False, None).word == NOT_JUDGED
     assert decided.evidence.sizes["instant"] == decided.evidence.sizes["reading"] == 0

@@ -23,7 +23,7 @@ FREQUENCY = {"one": 1.1, "two": 1.7}  # Hz, of each motion
 def prescribed_run(
     structure, motion, model, parameters, time_step, duration, output_rate=200.0, accelerometers=False
 ):
-    """Run of two blocks that rock and slip as the table's displacement says, the more the less friction there is.
+    """Run of two blocks that rock and slip as the table's displacement states, the more the less friction there is.
 
     Stands in for `blockshake.simulation.simulate.simulate`: same arguments, same form of the run.
     """

@@ -62,7 +62,7 @@ def test_record_at_rest_keeps_its_peaks(start, tmp_path):
 @pytest.mark.parametrize("fixed", [False, True])
 @pytest.mark.parametrize("digits", [4, 5, 6, 7])
 def test_rounding_of_a_print_calls_no_correction(digits, fixed, cut, tmp_path):
-    """40 s at 0.005 s: the sums of rounding errors reach centimetres with few decimals, beside 27 mm of motion."""
+    """40 s at 0.005 s: the sums of rounding errors reach centimetres with few decimals, with 27 mm of motion."""
     path = write_at2(tmp_path / "p.AT2", made_at_rest(digits), 0.005, digits=digits, fixed=fixed, cut=cut)
     assert as_published(path)
     assert "within the rounding" in load_motion(path).attributes["baseline"]
@@ -187,7 +187,7 @@ def test_frequency_corrects_whatever_ends_at_rest(tmp_path):
     path = write_at2(tmp_path / "r.AT2", wavelet(LATE)[1])
     read = load_motion(path, scale=2.0, baseline=0.5)
     assert read.attributes["record_start"] == pytest.approx(6.0)  # 1.5 times 2 over 0.5 Hz
-    assert "as asked for" in read.attributes["baseline"]
+    assert "as requested" in read.attributes["baseline"]
     assert "0.5 Hz" in read.attributes["baseline"]
     assert read.attributes["scale"] == 2.0
     with pytest.raises(InputError, match="duration: expected more than 6 s"):

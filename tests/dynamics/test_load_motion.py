@@ -31,7 +31,7 @@ def test_content_tells_the_format_and_values_are_si(tmp_path, file_name, text, u
     np.testing.assert_allclose(accelerations(raw), unit * series()[:-1], atol=1e-8)  # the files' last digits
     assert raw.duration == pytest.approx(STEP * 499)
     assert raw.attributes["format"] == format_name
-    assert raw.attributes["baseline"].startswith("none, as asked for; the record ends with ")
+    assert raw.attributes["baseline"].startswith("none, as requested; the record ends with ")
     assert raw.attributes["synthetic"] is False
     assert raw.name == Path(file_name).stem
 

@@ -47,7 +47,7 @@ def test_a_folder_is_a_set_and_a_motion_is_none(folder):
 
 
 def test_first_samples_are_even_over_levels_and_records(folder):
-    """Of any first samples no level comes twice more than another, and none has a record twice before it has all."""
+    """For any first samples no level comes twice more than another, and none has a record twice before it has all."""
     levels = [0.5, 1.0]
     every = drawn(folder, intensity={"levels": levels})
     records = [every.draw(sample, 1) for sample in range(12)]
@@ -139,7 +139,7 @@ def test_a_wrong_table_is_refused(folder, content, said):
 def test_a_level_of_the_case_beside_those_of_a_table_is_refused(folder):
     table = folder.parent / "set.csv"
     table.write_text("file,level\nrecords/record-0.csv,2.5\n")
-    with pytest.raises(InputError, match=r"no level beside intensity\.levels"):
+    with pytest.raises(InputError, match=r"no level with intensity\.levels"):
         drawn(table, intensity={"levels": [1.0]})
 
 
@@ -159,7 +159,7 @@ def test_a_vertical_component_is_not_drawn_as_a_horizontal_one(folder):
 
 
 def test_records_of_one_set_begin_at_one_time_whatever_their_format(folder):
-    """An AT2 that does not end at rest starts behind a zero pad of 30 s; the CSV beside it rests as long."""
+    """An AT2 that does not end at rest starts behind a zero pad of 30 s; the CSV with it rests as long."""
     time = 0.01 * np.arange(1000)
     write_at2(folder / "offset.AT2", 0.5 + np.sin(2.0 * np.pi * time), 0.01)
     motions = list(drawn(folder).strongest())

@@ -202,7 +202,7 @@ def test_an_entry_is_whole(name):
     assert effect.parameters[0].visible != effect.parameters[0].null
     assert effect.equation
     assert effect.source
-    assert effect.told_apart_by
+    assert effect.distinguished_by
     seen = any((effect.columns, effect.turns, effect.lifts))
     # a size that the evidence finds is read as the effect's parameters
     assert bool(effect.reads) == seen

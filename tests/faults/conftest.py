@@ -21,7 +21,7 @@ class Whole(NamedTuple):
 
 @pytest.fixture(scope="session")
 def whole(tmp_path_factory):
-    """Works that nothing happened to, by name: each is run when it is first asked for."""
+    """Works that nothing happened to, by name: each is run when it is first requested."""
     for model in ("ls-dem", "nscd-rigid"):
         compile_kernels(model)
 

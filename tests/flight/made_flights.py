@@ -9,7 +9,7 @@ from blockshake.dynamics.motion import GroundMotion, rest_table
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import build_structure
 from blockshake.simulation.simulate import simulate
-from blockshake_flight.posed_test import PosedCampaign, PosedTest
+from blockshake_flight.tracked_test import TrackedCampaign, TrackedTest
 
 RATE = 200.0  # Hz
 NOISE, TURN_NOISE = 5e-5, 1e-3  # m, rad
@@ -39,7 +39,7 @@ def drag(damping):
 
 
 def toss(number, hidden, duration=0.8):
-    """A `PosedTest` of a toss drawn by its number, with what is hidden in its structure file."""
+    """A `TrackedTest` of a toss drawn by its number, with what is hidden in its structure file."""
     random = np.random.default_rng([7, number])
     quaternion = random.standard_normal(4)
     start = {
@@ -57,7 +57,7 @@ def toss(number, hidden, duration=0.8):
     centroid = run["position"].to_numpy()[:, 1] - rotation @ structure.mass_offset[1]
     time = run["time"].to_numpy()
     noisy = centroid + NOISE * random.standard_normal(centroid.shape)
-    return PosedTest(f"toss-{number}", time, noisy, _turned(rotation, random), planar=False)
+    return TrackedTest(f"toss-{number}", time, noisy, _turned(rotation, random), planar=False)
 
 
 def _turned(rotation, random):
@@ -71,8 +71,8 @@ def _turned(rotation, random):
 
 
 def campaign(numbers, hidden=(), scale=1.0, size=(SIDE, SIDE, SIDE)):
-    """`PosedCampaign` of some tosses, lengths read ``scale`` times too long, judged by a box with nothing hidden."""
+    """`TrackedCampaign` of some tosses, lengths read ``scale`` times too long, judged by a box with nothing hidden."""
     structure = build_structure(mapping(size), "made", Path())
     tests = [toss(number, {"size": size, **dict(hidden)}) for number in numbers]
     tests = [replace(test, position=scale * test.position) for test in tests]
-    return PosedCampaign(structure, tests, 1, structure.solids["box"].polyhedron.vertices, 0.0)
+    return TrackedCampaign(structure, tests, 1, structure.solids["box"].polyhedron.vertices, 0.0)

@@ -64,10 +64,10 @@ def test_an_eccentric_mass_is_named_with_its_place(offset):
 
 @pytest.mark.parametrize("sign", [(1.0, 1.0, 1.0), (-1.0, 1.0, 1.0), (1.0, -1.0, 1.0)])
 def test_rotations_of_the_other_hand_are_remarked(sign):
-    """A mass centre beside the middle circles with the body, and against rotations of a mirrored frame."""
-    posed = campaign(OPEN, {"body": {"mass_offset": [0.006, -0.004, 0.005]}})
-    mirrored = [replace(test, position=test.position * sign) for test in posed.tests]
-    decision, _ = decide_flights(replace(posed, tests=mirrored))
+    """A mass centre off the middle circles with the body, and against rotations of a mirrored frame."""
+    tracked = campaign(OPEN, {"body": {"mass_offset": [0.006, -0.004, 0.005]}})
+    mirrored = [replace(test, position=test.position * sign) for test in tracked.tests]
+    decision, _ = decide_flights(replace(tracked, tests=mirrored))
     told = any("other hand" in line for line in decision.cannot_see)
     assert told == (min(sign) < 0.0)
 
@@ -94,24 +94,24 @@ def test_causes_that_act_together_have_sizes_that_hold():
 
 
 def test_a_box_that_is_no_cube_keeps_its_angular_momentum_and_not_its_spin():
-    posed = campaign(range(6), size=(0.06, 0.24, 0.16))
-    arcs, _ = find_arcs(posed)
-    tests = [(test, arc) for test in posed.tests if (arc := start_arc(test, arcs))]
+    tracked = campaign(range(6), size=(0.06, 0.24, 0.16))
+    arcs, _ = find_arcs(tracked)
+    tests = [(test, arc) for test in tracked.tests if (arc := start_arc(test, arcs))]
     assert len(tests) >= 4
     for test, arc in tests:
-        turned = replay(posed, test, arc, FlightModel(0.2, 0.4)).turned[: len(arc.time)]
+        turned = replay(tracked, test, arc, FlightModel(0.2, 0.4)).turned[: len(arc.time)]
         assert np.degrees(turned.max()) < 1.0
 
 
 def test_rows_without_a_pose_are_left_out_of_paths():
-    posed = campaign(range(3))
-    (test, *others), rows = posed.tests, slice(60, 64)
+    tracked = campaign(range(3))
+    (test, *others), rows = tracked.tests, slice(60, 64)
     position, rotation = test.position.copy(), test.rotation.copy()
     position[rows], rotation[rows] = np.nan, np.nan
-    posed = replace(posed, tests=[replace(test, position=position, rotation=rotation), *others])
-    decide_flights(posed)
-    arc = start_arc(posed.tests[0], find_arcs(posed)[0])
-    middle = replay(posed, posed.tests[0], arc, FlightModel(0.2, 0.4)).middle
+    tracked = replace(tracked, tests=[replace(test, position=position, rotation=rotation), *others])
+    decide_flights(tracked)
+    arc = start_arc(tracked.tests[0], find_arcs(tracked)[0])
+    middle = replay(tracked, tracked.tests[0], arc, FlightModel(0.2, 0.4)).middle
     assert np.flatnonzero(np.isnan(middle)).tolist() == [row - arc.first for row in range(60, 64)]
     assert np.nanmax(middle) < 0.5
 
@@ -129,8 +129,8 @@ EVEN = MASS * SIDE**2 / 6.0  # kg m2, of the cube
 @pytest.mark.parametrize("moments", [(1.0, 1.0, 1.0), (1.0, 1.25, 0.9), (1.3, 1.3, 1.3)])
 def test_flights_tell_the_ratios_of_the_moments_of_inertia_and_not_their_size(moments):
     """Euler's equations have the same spins where all moments are larger by a factor."""
-    posed = campaign(OPEN, {"body": {"inertia": [EVEN * one for one in moments]}})
-    ratios, deviations = seen_ratios(posed, find_arcs(posed)[0])
+    tracked = campaign(OPEN, {"body": {"inertia": [EVEN * one for one in moments]}})
+    ratios, deviations = seen_ratios(tracked, find_arcs(tracked)[0])
     assert deviations.max() < 0.05
     away = ratios - np.log(np.array(moments[1:]) / moments[0])
     assert np.abs(away / deviations).max() < 4.0
@@ -142,12 +142,12 @@ def test_flights_in_a_plane_tell_no_moment_of_inertia(clean):
 
 
 def test_paths_are_nearer_with_the_inertia_that_the_body_has():
-    posed = campaign(range(8), {"body": {"inertia": [1.3 * EVEN] * 3}})
-    arcs, _ = find_arcs(posed)
-    tests = [(test, arc) for test in posed.tests if (arc := start_arc(test, arcs))]
+    tracked = campaign(range(8), {"body": {"inertia": [1.3 * EVEN] * 3}})
+    arcs, _ = find_arcs(tracked)
+    tests = [(test, arc) for test in tracked.tests if (arc := start_arc(test, arcs))]
 
     def error(size):
         model = FlightModel(0.2, 0.4, inertia=(np.log(size),) * 3)
-        return np.mean([np.nanmean(replay(posed, *one, model).middle) for one in tests])
+        return np.mean([np.nanmean(replay(tracked, *one, model).middle) for one in tests])
 
     assert error(1.3) < 0.7 * min(error(1.0), error(1.6))

@@ -16,7 +16,7 @@ from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.own_files.import_campaign import make_campaign
 from blockshake.own_files.import_map import load_map
 from blockshake_flight.pose_file import read_poses
-from blockshake_flight.posed_test import load_posed
+from blockshake_flight.tracked_test import load_tracked
 
 STRUCTURE = {
     "name": "one block",
@@ -167,7 +167,7 @@ def test_a_motion_is_of_all_tests_or_of_none(tmp_path):
 def test_a_body_below_the_ground_is_refused(tmp_path):
     folder = campaign(tmp_path, table=planar(**{"block.z": -planar()["block.z"]}))
     with pytest.raises(InputError, match="z up"):
-        load_posed(load_campaign(folder), ["drop"])
+        load_tracked(load_campaign(folder), ["drop"])
 
 
 @pytest.mark.usefixtures("structure")
@@ -177,10 +177,10 @@ def test_heights_in_feet_are_refused_by_where_the_body_comes_to_rest(tmp_path, f
     fallen = np.maximum(0.15, 0.5 - 4.9 * TIME**2) * factor
     folder = campaign(tmp_path, table=planar(**{"block.z": fallen, "block.angle_y": 0.0 * TIME}))
     if not refused:
-        assert load_posed(load_campaign(folder), ["drop"]).tests
+        assert load_tracked(load_campaign(folder), ["drop"]).tests
         return
     with pytest.raises(InputError, match="rest 342 mm above the ground"):
-        load_posed(load_campaign(folder), ["drop"])
+        load_tracked(load_campaign(folder), ["drop"])
 
 
 def test_more_than_one_free_body_is_refused(tmp_path):
@@ -188,7 +188,7 @@ def test_more_than_one_free_body_is_refused(tmp_path):
     mapping = {**STRUCTURE, "bodies": [*STRUCTURE["bodies"], second]}
     (tmp_path / "structure.yaml").write_text(yaml.safe_dump(mapping))
     with pytest.raises(InputError, match="one free body"):
-        load_posed(load_campaign(campaign(tmp_path)), ["drop"])
+        load_tracked(load_campaign(campaign(tmp_path)), ["drop"])
 
 
 def test_a_table_in_other_units_is_imported(tmp_path, structure):

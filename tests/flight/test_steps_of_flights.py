@@ -19,8 +19,8 @@ ROLES = ("fit", "select", "sealed")
 
 def written(folder):
     """Folder of a campaign of three tosses of a box whose mass centre lies off its middle."""
-    posed = campaign(range(len(ROLES)), {"body": {"mass_offset": [0.006, -0.004, 0.005]}})
-    for test in posed.tests:
+    tracked = campaign(range(len(ROLES)), {"body": {"mass_offset": [0.006, -0.004, 0.005]}})
+    for test in tracked.tests:
         turned = Rotation.from_matrix(test.rotation).as_quat(scalar_first=True)
         columns = {f"box.{axis}": column for axis, column in zip("xyz", test.position.T, strict=True)}
         columns |= {f"box.q{part}": column for part, column in zip("wxyz", turned.T, strict=True)}
@@ -28,7 +28,7 @@ def written(folder):
     (folder / "structure.yaml").write_text(yaml.safe_dump(mapping()))
     tests = [
         {"name": test.name, "file": f"{test.name}.csv", "role": role}
-        for test, role in zip(posed.tests, ROLES, strict=True)
+        for test, role in zip(tracked.tests, ROLES, strict=True)
     ]
     text = yaml.safe_dump({"name": "tosses", "structure": "structure.yaml", "tests": tests})
     (folder / "campaign.yaml").write_text(text)
@@ -57,5 +57,5 @@ def test_a_campaign_of_flights_is_diagnosed_from_its_files_to_its_report(tmp_pat
     write_verdict(results / "verdict.json", steps.conclude(folder, 0, files))
     html, pdf = tmp_path / "report.html", tmp_path / "report.pdf"
     make_diagnosis_report(folder, str(results), "quick", "no-record.json", html, pdf)
-    assert "mass centre beside the middle, box" in html.read_text()
+    assert "mass centre off the middle, box" in html.read_text()
     assert pdf.stat().st_size > 0

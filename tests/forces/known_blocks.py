@@ -144,7 +144,7 @@ def readings(structure, poses, noise=0.0, noise_acc=0.0, seed=0):
     ----------
     structure : Structure
     poses : callable
-        Of a time: displacements along x and z of the mass centres [m] and turns about y [rad], (n_bodies, 3).
+        For a time: displacements along x and z of the mass centres [m] and turns about y [rad], (n_bodies, 3).
     noise, noise_acc : float
         White, of markers [m] and accelerometers [m/s2].
     seed : int
@@ -207,11 +207,11 @@ def kicked(shares, height=HEIGHT, kick=0.5, table_acceleration=lambda t: 0.0):
     shares : list of float
         By impact, the last one for all others [1].
     height : float
-        Of the body [m].
+        The body [m].
     kick : float
         Spin at first [rad/s].
     table_acceleration : callable
-        Of a time [m/s2].
+        A time [m/s2].
     """
     half, high = 0.5 * WIDTH, 0.5 * height
     radius, alpha = np.hypot(half, high), np.arctan2(half, high)

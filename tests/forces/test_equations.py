@@ -11,7 +11,7 @@ X, Z = np.eye(3)[0], np.eye(3)[2]
 
 
 def test_a_pitch_that_is_read_roughly_is_read_where_the_other_rotations_are_held():
-    """Two markers on a vertical line tell a planar motion; the rest is held, however sharply beside rough readings."""
+    """Two markers on a vertical line tell a planar motion; the rest is held, however sharply with rough readings."""
     equations = AccelerationEquations(1, 1)
     pitch, variance, half = (
         0.5,

@@ -45,7 +45,7 @@ class TooLong(BaseException):
     """More CPU time than a refusal may take."""
 
 
-# asked for now: matplotlib makes the folder, which a watch would watch
+# requested now: matplotlib makes the folder, which a watch would watch
 _PICTURES = Path(matplotlib.get_cachedir()).resolve()
 
 

@@ -60,7 +60,7 @@ GOOD = {
 
 
 def corners_of(kind, content):
-    """Triangles of a file read by rule and line, shape (n, 3, 3); raises where it is not what it says."""
+    """Triangles of a file read by rule and line, shape (n, 3, 3); raises where it is not what it states."""
     if kind == "STL":
         (count,) = struct.unpack_from("<I", content, 80)
         values = np.frombuffer(
@@ -107,7 +107,7 @@ def held_against_its_values(kind, content):
     try:
         corners = corners_of(kind, content)
     except (AssertionError, ValueError, IndexError, KeyError, struct.error):
-        # not as the format says in a way that its reader passes over: the surface is then the good one's or none
+        # not as the format states in a way that its reader passes over: the surface is then the good one's or none
         corners = SOLID
     centre = corners.mean(axis=(0, 1))
     stated = DENSITY * np.linalg.det(corners - centre).sum() / 6.0

@@ -138,7 +138,7 @@ def test_a_control_character_of_a_name_is_shown_as_an_escape():
 
 @pytest.fixture
 def folder(tmp_path):
-    """A folder beside a secret, with links to it and to itself."""
+    """A folder next to a secret, with links to it and to itself."""
     (tmp_path / "secret.txt").write_text("secret")
     folder = tmp_path / "received"
     folder.mkdir()

@@ -82,7 +82,7 @@ def test_the_same_seed_gives_the_same_bytes(short, tmp_path):
 
 @pytest.mark.skipif(not mujoco_case.is_there(), reason="there is no mujoco: `make peers` sets it up")
 def test_mujocos_laboratory_gives_the_same_bytes(monkeypatch, tmp_path):
-    """And a push moves nothing beside a twin without it before it starts."""
+    """And a push moves nothing next to a twin without it before it starts."""
     monkeypatch.setattr(case_plan, "STRONG_PLAN", (("alkion", 1.0, "fit"), ("basso-tirreno", 1.0, "fit")))
     monkeypatch.setattr(mujoco_case, "DURATION", 1.5)
     for again in ("one", "two"):

@@ -20,7 +20,7 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
 from blockshake.files import load_yaml
-from blockshake.forces.seen.seen_test import see_test
+from blockshake.forces.seen.reconstructed_test import reconstruct_test
 from blockshake.geometry.structure import build_structure, load_structure
 from blockshake.measurement.campaigns.campaign import Sensors, load_campaign
 from blockshake.measurement.campaigns.open_readings import read_open_tests
@@ -34,7 +34,7 @@ LAG, NEAR = 5e-3, 1e-3  # s; of a clock that is put behind, and how near it must
 
 def _seen(tests, structure):
     return [
-        see_test(name, without_outliers(test, structure), structure, Sensors())
+        reconstruct_test(name, without_outliers(test, structure), structure, Sensors())
         for name, test in tests.items()
     ]
 

@@ -1,4 +1,4 @@
-"""The scorer: perfect verdicts score 100 %, shuffled truths chance; its page holds what its file says."""
+"""The scorer: perfect verdicts score 100 %, shuffled truths chance; its page holds what its file states."""
 
 import json
 from collections import Counter
@@ -335,7 +335,7 @@ def test_a_description_is_on_time_in_the_test_that_was_struck(test, at, hits):
 
 
 def test_intervals_of_medians_are_order_statistics():
-    """Of 6 values the least and largest hold the median in 1 - 2 / 64 = 0.969; of 5 nothing does in 0.95."""
+    """6 values the least and largest hold the median in 1 - 2 / 64 = 0.969; of 5 nothing does in 0.95."""
     gained = [
         replace(
             _case(_verdict("named", ["eccentricity"])),

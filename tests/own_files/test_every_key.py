@@ -26,7 +26,7 @@ from blockshake.study.limit_states.settings import LimitState
 from blockshake.study.sampling.latin_hypercube import draw_design
 from blockshake.virtual.settings import VirtualCampaign, load_settings
 
-# keys that exclude others of the good files, or that `extend-study` writes: tested beside what they are for
+# keys that exclude others of the good files, or that `extend-study` writes: tested next to what they are for
 ELSEWHERE = (
     "shapes.*.mesh",
     *(f"shapes.*.cylinder.{key}" for key in Cylinder.model_fields),
@@ -149,11 +149,11 @@ def test_a_wrong_value_is_named_with_file_and_key(good, kind, key, value, words,
     mapping = load_yaml(KINDS[kind][1])
     said = refusal(good, kind, changed(mapping, place_of(mapping, key), value))
     assert words in said
-    # a fault that lies in another file is told with that file
+    # a fault that lies in another file is reported with that file
     named = re.findall(r"[\w-]+\.(?:csv|yaml)", str(value))
     assert KINDS[kind][1] in said or any(name in said for name in [*named, *BESIDE])
     if KINDS[kind][1] in said and kind != "campaign":
-        # a structure that a model cannot read with these parameters is told by the case
+        # a structure that a model cannot read with these parameters is given by the case
         told = key.split(".")[0], key.split(".")[-1], "cases.0.structure: ls-dem: "
         assert any(one in said for one in told)
 
@@ -166,7 +166,7 @@ def test_a_value_of_another_type_is_named(good, kind, monkeypatch):
     mapping = load_yaml(name)
     for pattern in keys_of(schema.model_json_schema()):
         place = first_place(mapping, pattern)
-        if place is None:  # a mesh, which no box has beside it
+        if place is None:  # a mesh, which no box has with it
             continue
         said = refusal(good, kind, changed(mapping, place, [[["x"]]]))
         assert str(place[-1]) in said, (place, said)

@@ -178,7 +178,7 @@ BAD = {
     "no unit of accelerations": (_same, ["--column", "slab-acc-x=frei"], "--acceleration-unit: missing key"),
     "another unit in the header": (
         lambda rows: [["s", "mm", "cm", "mm"], *rows], ["--data", "3"],
-        "--column: block-1-face.x: ... v1.csv: column 'Weg 1': expected mm; the header says cm",
+        "--column: block-1-face.x: ... v1.csv: column 'Weg 1': expected mm; the header states cm",
     ),
     "a row of units": (_set(0, 2, "mm"), [], "--data: ... v1.csv: line 2, Weg 1: expected a number"),
     "a row of units without one of times": (

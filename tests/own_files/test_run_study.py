@@ -50,7 +50,7 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.fixture
 def workflow(monkeypatch):
-    """Commands of workflows that would have run; each says these lines."""
+    """Commands of workflows that would have run; each states these lines."""
     commands, lines = [], []
 
     def run(command, hear):

@@ -37,7 +37,7 @@ def test_a_suffix_that_is_no_picture_is_refused(tmp_path):
 
 
 def test_points_of_a_curve_are_where_matplotlib_puts_them(tmp_path):
-    """Each is told from the one before, to a hundredth of a point; errors do not add up along the curve."""
+    """Each is distinguished from the one before, to a hundredth of a point; errors do not add up along the curve."""
 
     def curve():
         figure = new_figure(0.05)

@@ -59,7 +59,7 @@ def _exchanged(tests, variable, dimension, one, other):
 
 @pytest.fixture(scope="module")
 def pitching(three):
-    """Sound sensors on a table that pitches by 0.4 mrad per m/s2: real motion of the slab."""
+    """Faultless sensors on a table that pitches by 0.4 mrad per m/s2: real motion of the slab."""
     return make_tests(three, 2, pitch=4e-4, mounting=1e-3, marker_dropouts=0.01)
 
 
@@ -238,7 +238,7 @@ def test_a_sealed_test_is_not_opened(tmp_path):
 
 @pytest.mark.slow
 def test_false_alarms_of_clean_campaigns():
-    """At most 5 % of campaigns with sound sensors get any finding, with half of them on markers in a line."""
+    """At most 5 % of campaigns with faultless sensors get any finding, with half of them on markers in a line."""
     alarms = 0
     for seed in range(CLEAN_CAMPAIGNS):
         generator = np.random.default_rng([seed, 99])

@@ -17,7 +17,7 @@ LEVEL = Level(0.01, hypotheses(len(TESTS)))
 def held_readings(seed, gain=0.0, place=(0.0, 0.0, 0.0), slip=None):
     """Three records of 10 s: the bodies move apart by centimetres while they turn by tens of milliradians.
 
-    The sound transducer has half of each tolerance as standard deviation, and a clock that lags by 0.2 ms.
+    The faultless transducer has half of each tolerance as standard deviation, and a clock that lags by 0.2 ms.
     """
     generator = np.random.default_rng(seed)
     time = 0.05 + 0.1 * np.arange(100)

@@ -84,7 +84,7 @@ def test_each_fault_is_named_at_its_transducer_and_taken_out(structure):
     largest = np.abs(sound["t2"]["transducer_displacement"]).max("time_acc").to_numpy()
     assert error[0] < 4.0 * gain.standard_error[0] * largest[0]
     assert error[2] == 0.0
-    # the step's time is known to a tenth of a second: beside it nothing is left but the error of its size
+    # the step's time is known to a tenth of a second: with it nothing is left but the error of its size
     beside = np.abs(sound["t2"]["time_acc"].to_numpy() - 5.05) > 0.1
     left = (mended - sound["t2"]["transducer_displacement"].to_numpy()).to_numpy()[beside, 1]
     assert np.abs(left).max() < 4.0 * slip.standard_error[0]
@@ -110,7 +110,7 @@ def test_ends_that_the_markers_do_not_see_are_not_judged():
 
 @pytest.mark.slow
 def test_false_alarms_of_clean_campaigns(structure):
-    """At most 5 % of campaigns with sound sensors get any finding; half the tolerance is a standard deviation."""
+    """At most 5 % of campaigns with faultless sensors get any finding; half the tolerance is a standard deviation."""
     alarms = 0
     for seed in range(CLEAN_CAMPAIGNS):
         generator = np.random.default_rng([seed, 99])

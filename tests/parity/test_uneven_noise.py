@@ -1,4 +1,4 @@
-"""Sound sensors whose noise is not alike along all axes, or not white, have no fault."""
+"""Faultless sensors whose noise is not alike along all axes, or not white, have no fault."""
 
 import pytest
 from synthetic_campaigns import ROCKING, make_run, structure_of_three

@@ -5,7 +5,12 @@ import pytest
 
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import load_structure
-from blockshake.simulation.rocking import carried_by, overturning_margins, plastic_shares, spin_kept
+from blockshake.simulation.rocking import (
+    angular_momentum_ratio,
+    carried_by,
+    overturning_margins,
+    plastic_shares,
+)
 
 WIDTH, HEIGHT = 0.5, 2.0  # m
 HEAD = """
@@ -74,14 +79,16 @@ def test_spin_kept_is_that_of_the_motion(block, kept):
     rate = np.where(before > 0.0, 0.4 - 0.6 * before, kept * 0.4 - 0.6 * after)
     spin = np.zeros((len(time), 2, 3))
     spin[:, 1, 1] = rate
-    found = spin_kept(block, time, *rocked(block, angle), spin)
+    found = angular_momentum_ratio(block, time, *rocked(block, angle), spin)
     # the instant of the impact is known within a row, in which the weight bends the spin by this share of it
     assert found == pytest.approx([kept], abs=0.6 * 0.005 / 0.4)
 
 
 def test_a_block_that_never_rocks_has_no_impact(block):
     time = np.arange(0.0, 1.0, 0.005)
-    assert np.isnan(spin_kept(block, time, *rocked(block, 0.01 * time), np.zeros((len(time), 2, 3)))).all()
+    assert np.isnan(
+        angular_momentum_ratio(block, time, *rocked(block, 0.01 * time), np.zeros((len(time), 2, 3)))
+    ).all()
 
 
 def test_plastic_share_is_that_of_housner(block, tmp_path):

@@ -1,4 +1,4 @@
-"""A body that moves before the ground does is told of; one that waits for it is not."""
+"""A body that moves before the ground does is reported of; one that waits for it is not."""
 
 import numpy as np
 import pytest

@@ -98,7 +98,7 @@ def least_thickness(count):
 
 
 def test_the_limit_analysis_of_the_tests_has_known_thicknesses():
-    """Of a continuous arch 0.1075 of the radius (Milankovitch 1907), of fifteen wedges 0.1061."""
+    """A continuous arch 0.1075 of the radius (Milankovitch 1907), of fifteen wedges 0.1061."""
     assert least_thickness(15) == pytest.approx(0.1061, abs=2e-4)
     assert least_thickness(61) == pytest.approx(0.1075, abs=5e-4)
 

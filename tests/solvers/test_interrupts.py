@@ -1,4 +1,4 @@
-"""An interrupt (Ctrl-C) while compiled kernels run: no crash, a saved run, and a message that says how to go on."""
+"""An interrupt (Ctrl-C) while compiled kernels run: no crash, a saved run, and a message that states how to go on."""
 
 import os
 import signal

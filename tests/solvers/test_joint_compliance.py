@@ -16,7 +16,7 @@ MASS = AREA * 2.0 * H * 2400.0
 CENTRAL = MASS * ((2.0 * B) ** 2 + (2.0 * H) ** 2) / 12.0
 # a slab as wide as the block: LS-DEM's nodes on both sides then have the block's area and second moment
 SEAT = {"slab": {"box": [2.0 * B, DEPTH, 0.2]}}
-# what a joint gives beside its layer [m3/N], normal and shear
+# what a joint gives next to its layer [m3/N], normal and shear
 OWN = {"ls-dem": (1.0 / K_N, 1.0 / K_S), "nscd": (0.0, 0.0)}
 STEP = {"ls-dem": 2e-5, "nscd": 2.5e-5}
 

@@ -1,4 +1,4 @@
-"""LS-DEM with stiff, critically damped contacts beside nonsmooth contact dynamics (NSCD), and both beside theory.
+"""LS-DEM with stiff, critically damped contacts with nonsmooth contact dynamics (NSCD), and both with theory.
 
 Both move the same blocks; what differs is the contact: springs and dashpots against Signorini's condition. As the
 springs stiffen, what they store and how long an impact lasts go to zero with the square root of the stiffness. The
@@ -27,7 +27,7 @@ RATE = 200  # Hz
 PIVOT = 0.5 * FLAT - INSET  # m
 LEAN = 13e-6  # rad, of a wall of the twin: 0.01 mm at its base
 AGREE = 0.02  # of the peak, aimed at
-SPREAD = 0.01  # of the peak, at which twins have parted: half of what is asked for is then chance
+SPREAD = 0.01  # of the peak, at which twins have parted: half of what is requested is then chance
 NORMAL, SHEAR = (
     LsDemParameters.model_fields[name].default for name in ("normal_stiffness", "shear_stiffness")
 )

@@ -79,7 +79,7 @@ def test_shifted_samples_are_beyond_the_level_of_chance():
 
 
 def test_few_members_have_no_level_of_chance():
-    """Of 20 divisions of six into halves two are the given one; of 84 of nine into three and six, one is."""
+    """For 20 divisions of six into halves two are the given one; of 84 of nine into three and six, one is."""
     generator, values = np.random.default_rng(SEED), constant(np.arange(9.0))
     differences = mean_differences(values, values)[..., 0]
     assert np.isnan(chance_distance(differences, np.arange(3), np.arange(3, 6), generator))

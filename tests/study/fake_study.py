@@ -46,7 +46,7 @@ def climbed_and_fitted():
     scales = 0.5 + 0.25 * np.arange(6)
     climbs = []
     for stands in (2, 3, 3, 4, 3):
-        rungs = [
+        levels = [
             {
                 "scale": scale,
                 "passed": place < stands,
@@ -56,7 +56,7 @@ def climbed_and_fitted():
             }
             for place, scale in enumerate(scales[: stands + 1])
         ]
-        climbs.append(rungs)
+        climbs.append(levels)
     climbs[-1][-1]["status"] = "not-converged"
     return fragility(
         gathered(np.arange(5), climbs, scales, xr.DataArray([np.nan, 0.4], {"body": ["slab", "block-1"]}))

@@ -63,7 +63,7 @@ def test_check_says_what_is_done_to_each_record(record, tmp_path):
     assert "PGD 4500 to 4" in line
     assert "\n" not in check(record).strip()
     assert "baseline: corrected" in check(record)
-    assert "baseline: none, as asked for; the record ends with 0.3 m/s at 4500 mm" in check(record, "none")
+    assert "baseline: none, as requested; the record ends with 0.3 m/s at 4500 mm" in check(record, "none")
 
 
 def test_a_motion_has_one_baseline_in_a_study(record):
@@ -175,17 +175,17 @@ def test_simulate_says_and_keeps_what_was_done(record, tmp_path, caplog, capsys)
     assert "--duration: expected more than 30 s: drift is corrected" in capsys.readouterr().err
     assert main([*run, "--duration", "0.05", "--baseline", "none", *output]) == 0
     assert (
-        "drift.AT2 (PEER NGA AT2); assumed: a component along x; baseline: none, as asked for" in caplog.text
+        "drift.AT2 (PEER NGA AT2); assumed: a component along x; baseline: none, as requested" in caplog.text
     )
     assert "the record ends with 0.3 m/s" in caplog.text
     with xr.open_dataset(tmp_path / "run.nc", decode_times=False) as made:
-        assert made.attrs["motion_baseline"].startswith("none, as asked for")
+        assert made.attrs["motion_baseline"].startswith("none, as requested")
     assert main([*run, "--baseline", "never", *output]) == 2
     assert "baseline: expected auto, none or a corner frequency" in capsys.readouterr().err
 
 
 def test_convert_motion_and_check_take_the_option(record, tmp_path, capsys):
-    for baseline, words in (("none", "baseline: none, as asked for"), ("0.2", "high-pass at 0.2 Hz")):
+    for baseline, words in (("none", "baseline: none, as requested"), ("0.2", "high-pass at 0.2 Hz")):
         assert main(["check", str(record), "--baseline", baseline]) == 0
         assert words in capsys.readouterr().out
         assert (

@@ -1,4 +1,4 @@
-"""Files of a user: allowed content, and the one line that says what is wrong."""
+"""Files of a user: allowed content, and the one line that states what is wrong."""
 
 import copy
 
@@ -120,7 +120,7 @@ def test_all_models_run_all_cases_of_the_default_study(mapping):
     ],
 )
 def test_what_is_wrong_is_named(mapping, path, value, line):
-    """Beside the wrong values of every key, tests/own_files/wrong_keys.py."""
+    """Next to the wrong values of every key, tests/own_files/wrong_keys.py."""
     place = mapping
     for key in path[:-1]:
         place = place[key]

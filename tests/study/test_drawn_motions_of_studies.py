@@ -132,7 +132,7 @@ def test_own_samples_stay_as_they_are(study, tmp_path):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"size": 11}, "mine.yaml: ensemble.size: expected no such key beside `table`"),
+        ({"size": 11}, "mine.yaml: ensemble.size: expected no such key with `table`"),
         ({"table": "none.csv"}, "mine.yaml: ensemble.table: none.csv: expected a readable file"),
     ],
 )

@@ -1,4 +1,4 @@
-"""Designs that grow: earlier samples stay to the bit, strata are nested, and a study says why it stops."""
+"""Designs that grow: earlier samples stay to the bit, strata are nested, and a study states why it stops."""
 
 import numpy as np
 import pandas as pd
@@ -84,13 +84,14 @@ def test_a_study_grows_until_its_limits_are_narrow(tmp_path, config):
     low, high = share_interval(8, 20)
     assert not stopped
     assert (
-        words == f"20 samples are not enough: collapse probability within {(high - low) / 2:.3g}, asked 0.12"
+        words
+        == f"20 samples are not enough: collapse probability within {(high - low) / 2:.3g}, requested 0.12"
     )
     assert reached(config, tmp_path).ensemble.size == 40
     write_samples(tmp_path, 2, 40)
     words, stopped = grow(config, tmp_path)
     assert stopped
-    assert words.startswith("stopped at 40 samples, as accurate as asked: collapse probability within 0.0")
+    assert words.startswith("stopped at 40 samples, as accurate as set: collapse probability within 0.0")
     # the same command again decides the same
     assert grow(config, tmp_path) == (words, True)
     assert [one["size"] for one in load_json(tmp_path / "grows" / "growth.json")["history"]] == [20, 40]

@@ -79,7 +79,7 @@ def test_a_killed_or_interrupted_command_goes_on(model, end, tmp_path):
     os.kill(killed.pid, end)
     _, said = killed.communicate()
     if end == signal.SIGINT:
-        # the work is asked for, not the time, which on a busy machine says nothing
+        # the work is requested, not the time, which on a busy machine states nothing
         assert _work_of_children() - before - (own.user + own.system) < MOST_WORK
         assert killed.returncode == 130
         assert re.fullmatch(
@@ -92,7 +92,7 @@ def test_a_killed_or_interrupted_command_goes_on(model, end, tmp_path):
     assert checkpoint.exists()
     assert not output.exists()
     again = subprocess.run(_command(model, output), capture_output=True, text=True, check=True)
-    # it says so, and from where: neither the start nor the end
+    # it states it, and from where: neither the start nor the end
     reached = float(re.search(r"goes on from ([0-9.]+) s", again.stderr)[1])
     assert 0.0 < reached < LONG[model]
     assert not checkpoint.exists()
@@ -105,7 +105,7 @@ def test_a_killed_or_interrupted_command_goes_on(model, end, tmp_path):
 
 @pytest.mark.parametrize("model", sorted(MODELS))
 def test_a_killed_sample_goes_on_in_the_store(model, tmp_path, monkeypatch):
-    """The second attempt starts from the checkpoint beside where the sample goes, and leaves none behind."""
+    """The second attempt starts from the checkpoint with where the sample goes, and leaves none behind."""
     case = {"structure": "configuration-1", "duration": 1.0}
     motion = load_motion("alkion")
     rows = pd.DataFrame({"friction.concrete.concrete": [0.6]}, index=[3])

@@ -59,7 +59,7 @@ def compared(coarse, fine, probability, seed):
     coarse, fine : float64 arrays, shape (n_samples, n)
         The same samples at both steps.
     probability : float
-        Of the quantile.
+        The quantile.
     seed : int
 
     Returns

@@ -128,7 +128,7 @@ def test_a_unit_error_names_both_units(tmp_path):
     for text in ("t,a [cm]\n0,1\n", "t,a [cm]\ns,cm\n0,1\n"):
         (tmp_path / "t.csv").write_text(text)
         table = read_table(tmp_path / "t.csv", TableLayout(data=text.count("\n")))
-        with pytest.raises(InputError, match=r"column 'a \[cm\]': expected mm; the header says cm"):
+        with pytest.raises(InputError, match=r"column 'a \[cm\]': expected mm; the header states cm"):
             table.column("a [cm]", MM, "displacement")
 
 

@@ -1,4 +1,4 @@
-"""Our nonsmooth contact dynamics beside LMGC90's, the paper's program, and both beside theory.
+"""Our nonsmooth contact dynamics with LMGC90's, the paper's program, and both with theory.
 
 The wheel finds its contacts on the faces that touch at the start and finds no others, stops its Gauss-Seidel at 1.7e-4
 of its own norm, and starts from rest: see ``docs/results/peers.md``.

@@ -10,7 +10,7 @@ import pytest
 
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake_flight.decide import decide_flights
-from blockshake_flight.posed_test import load_posed
+from blockshake_flight.tracked_test import load_tracked
 
 ROOT = Path(__file__).parents[2]
 MEASURED = Path(os.environ.get("BLOCKSHAKE_SHARED") or ROOT.parent / "shared") / "measured"
@@ -23,7 +23,7 @@ def decided(name, folder):
     program = ROOT / "examples" / "measured_flights.py"
     subprocess.run([sys.executable, program, name, MEASURED / name, folder], check=True)
     campaign = load_campaign(folder)
-    return decide_flights(load_posed(campaign, list(campaign.open))).decision
+    return decide_flights(load_tracked(campaign, list(campaign.open))).decision
 
 
 def test_a_tossed_cube_has_its_mass_centre_beside_the_middle_and_short_lengths(tmp_path):

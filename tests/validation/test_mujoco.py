@@ -1,4 +1,4 @@
-"""Our nonsmooth contact dynamics beside MuJoCo's soft contacts: what a user in a hurry would take."""
+"""Our nonsmooth contact dynamics with MuJoCo's soft contacts: what a user in a hurry would take."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Campaigns of other laboratories, from folder to verdict at quick effort, beside what was hidden in them."""
+"""Campaigns of other laboratories, from folder to verdict at quick effort, against what was hidden in them."""
 
 import os
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The record of LMGC90 that ships, beside our code of today; needs no peer."""
+"""The record of LMGC90 that ships, with our code of today; needs no peer."""
 
 import numpy as np
 import pytest

@@ -37,7 +37,7 @@ def test_joints_markers_and_energy_have_their_units_in_their_names(tables, leani
     assert set(first["lower"]) == {"slab"}
     assert (first["joint_force_y_N"] == -4e3).all()
     assert (first["normal_force_N"] == 2e4).all()
-    # not told is an empty cell
+    # unknown is an empty cell
     assert joints[joints["joint"] == "lower-upper"]["friction_ratio"].isna().all()
     markers, energy = tables["run-markers.csv"], tables["run-energy.csv"]
     np.testing.assert_array_equal(

@@ -117,7 +117,7 @@ def test_bad_configuration_ends_in_one_line_and_exit_2(tmp_path):
 
 
 def test_an_input_of_the_future_is_named_before_the_first_job(tmp_path):
-    """Snakemake takes away what is older than its inputs, and never says so to `blockshake study`."""
+    """Snakemake takes away what is older than its inputs, and never states it to `blockshake study`."""
     checkout, name = Checkout(tmp_path), "motions/basso-tirreno.yaml"
     ahead = time.time() + 3600.0
     os.utime(tmp_path / "config" / name, (ahead, ahead))

@@ -27,7 +27,7 @@ EDITS = {
     ),
     "diagnosis": (
         "solvers/ls_dem/driver.py", "diagnosis/evidence/likelihood.py", "diagnosis/answer/decide.py",
-        "diagnosis/misfit/judged_test.py", "diagnosis/verdict/ladder.py", "parity/marker_faults.py",
+        "diagnosis/misfit/judged_test.py", "diagnosis/verdict/grade.py", "parity/marker_faults.py",
         "diagnosis/report/odds_section.py",
     ),
 }  # fmt: skip

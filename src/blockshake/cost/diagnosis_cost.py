@@ -14,7 +14,7 @@ _TRIED = 2  # draws of a test by a solver
 
 
 def campaign_cost(folder, effort):
-    """CPU time of a diagnosis by itself, see `diagnosis_cost`, with its jobs beside their runs."""
+    """CPU time of a diagnosis by itself, see `diagnosis_cost`, with its jobs in addition to their runs."""
     return [*diagnosis_cost(folder, effort, {}), planned_jobs(diagnosis_command(folder, effort, cores=1))]
 
 
@@ -24,7 +24,7 @@ def diagnosis_cost(folder, effort, tried):
     Parameters
     ----------
     folder : str or path
-        Of the campaign.
+        The campaign.
     effort : str
         One of `EFFORTS`.
     tried : dict

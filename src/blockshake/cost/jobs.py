@@ -1,4 +1,4 @@
-"""Parts of a cost, and that of the workflow's jobs beside their simulations."""
+"""Parts of a cost, and that of the workflow's jobs in addition to their simulations."""
 
 import os
 import re
@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from blockshake.errors import InputError
 
-# CPU seconds of jobs beside their simulations. Their start, `_USUAL`, was measured beside other work (2026-11-26),
-# where the plan of the default study took `_PLANNED`; what some have to do beside it is from the logs of that study,
-# kernels are from decision 17.
+# CPU seconds of jobs in addition to their simulations. Their start, `_USUAL`, was measured with other work
+# (2026-11-26), where the plan of the default study took `_PLANNED`; what some have to do with it is from the logs of
+# that study, kernels are from decision 17.
 _USUAL = 2.2
 _FIXED = {
     "all": 0.0,
@@ -35,7 +35,7 @@ class CostPart(NamedTuple):
 
 
 def planned_jobs(command):
-    """`CostPart` of the workflow's jobs beside the simulations that are tried, if nothing is made yet.
+    """`CostPart` of the workflow's jobs next to the simulations that are tried, if nothing is made yet.
 
     Parameters
     ----------
@@ -62,4 +62,4 @@ def planned_jobs(command):
     counts.pop("total", None)
     spent = after.children_user + after.children_system - before.children_user - before.children_system
     seconds = sum(count * _FIXED.get(rule, _USUAL) for rule, count in counts.items())
-    return CostPart("jobs beside their runs", sum(counts.values()), spent / _PLANNED * seconds)
+    return CostPart("jobs in addition to their runs", sum(counts.values()), spent / _PLANNED * seconds)

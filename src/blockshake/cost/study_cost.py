@@ -33,10 +33,10 @@ def study_cost(path):
             structure = load_structure(case.structure)
             motion = next(DrawnMotions.of(case.model_dump()).strongest())
             trial = {"model": solver_of(model).name, **settings.model_dump()}
-            asked = _runs(config, model, case)
-            runs = sum(count for count, _ in asked.values())
+            planned = _runs(config, model, case)
+            runs = sum(count for count, _ in planned.values())
             each = run_seconds(structure, motion, trial, case.duration, runs)
-            parts += [CostPart(name, count, whole * each) for name, (count, whole) in asked.items()]
+            parts += [CostPart(name, count, whole * each) for name, (count, whole) in planned.items()]
     tried = {}
     for folder in config.diagnosis.campaigns:
         parts += diagnosis_cost(folder, config.diagnosis.effort, tried)
@@ -53,12 +53,12 @@ def _runs(config, model, case):
     runs = {f"samples of {case.name}, {model}": (samples, samples)}
     if config.has_twin(model, case.name):
         runs[f"twin of {case.name}, {model}"] = _TWIN, _TWIN
-    asked = config.calibration
-    if asked is not None and case.name in asked.cases.get(model, ()):
+    planned = config.calibration
+    if planned is not None and case.name in planned.cases.get(model, ()):
         # a test is simulated for its record where that is shorter than the case
         shares = [min(record / case.duration, 1.0) for record in _open_records(case)]
-        steps = asked.size * asked.steps(config.ensemble.distributions, solver_of(model))
-        runs[f"calibration of {case.name}, {model}"] = asked.size * len(shares), steps * sum(shares)
+        steps = planned.size * planned.steps(config.ensemble.distributions, solver_of(model))
+        runs[f"calibration of {case.name}, {model}"] = planned.size * len(shares), steps * sum(shares)
     climbs = config.fragility
     if climbs is not None and climbs.model == model and case.name in climbs.cases:
         count = climbs.size * len(config.ladder.scales)

@@ -7,7 +7,7 @@ import numpy as np
 from blockshake.dynamics.motion import GroundMotion, MotionTable
 from blockshake.simulation.simulate import simulate
 
-_LONGEST = 10.0  # CPU s; a run that takes longer is tried in part, where few are asked for
+_LONGEST = 10.0  # CPU s; a run that takes longer is tried in part, where few are requested
 _MANY = 50  # runs; trying one of so many costs 2 % of them
 _PARTS = 0.2, 0.4  # s of strong motion; the second less the first is free of a run's set-up
 
@@ -25,7 +25,7 @@ def run_seconds(structure, motion, settings, duration, runs):
     duration : float
         [s]
     runs : int
-        How many such simulations are asked for.
+        How many such simulations are requested.
 
     Returns
     -------
@@ -34,7 +34,7 @@ def run_seconds(structure, motion, settings, duration, runs):
 
     Notes
     -----
-    A run that would take longer than 10 s is tried in its strongest part alone where fewer than 50 are asked for, and
+    A run that would take longer than 10 s is tried in its strongest part alone where fewer than 50 are requested, and
     counted as if all of it were as strong. That is off: in the paper's study it gave 0.6 (rigid blocks, configuration
     4) to 2.3 times (elastic blocks, configuration 2) the CPU time of the whole run.
     """

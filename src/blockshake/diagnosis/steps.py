@@ -18,7 +18,7 @@ from blockshake.store import load_made
 
 
 class DecidedCampaign(NamedTuple):
-    """Sensors checked against each other, what the tests speak for, and their rows as forces."""
+    """Sensors checked against each other, what the tests support, and their rows as forces."""
 
     parity: object
     decision: object
@@ -43,11 +43,11 @@ def decide_shaken(campaign, files, without):
     """Decision, evidence and parity of a campaign with base motion."""
     from blockshake.diagnosis.answer.decide import decide, undecided
     from blockshake.diagnosis.answer.thresholds import thresholds_of
-    from blockshake.diagnosis.evidence.seen_campaign import see_campaign
+    from blockshake.diagnosis.evidence.reconstructed_campaign import reconstruct_campaign
     from blockshake.files import load_json
     from blockshake.geometry.structure import load_structure
 
-    seen = see_campaign(campaign, without)
+    seen = reconstruct_campaign(campaign, without)
     unseen = [f"{name} is not judged: {reason}" for name, reason in seen.unseen.items()]
     if not seen.tests:
         return *undecided(load_structure(campaign.structure), without, unseen), seen.parity
@@ -73,7 +73,7 @@ def simulate_clean(folder, effort, solver, store):
     """Evidence of every cause in simulated open tests without any, by model: list of dict of str to float."""
     from dataclasses import replace
 
-    from blockshake.diagnosis.evidence.seen_campaign import found_sensors
+    from blockshake.diagnosis.evidence.reconstructed_campaign import found_sensors
     from blockshake.diagnosis.nominal.clean_runs import simulate_clean_runs
     from blockshake.diagnosis.nominal.plan import plan_diagnosis
     from blockshake.measurement.campaigns.open_readings import read_open_tests
@@ -97,7 +97,7 @@ def simulate_outcomes(folder, effort, batch, solver, store):
 
 
 def describe_misfit(folder, effort, files):
-    """`misfit` of the nominal ensembles of both solvers beside the measured histories of the open tests."""
+    """`misfit` of the nominal ensembles of both solvers against the measured histories of the open tests."""
     from blockshake.diagnosis.misfit.judged_test import judged_test, measured_histories
     from blockshake.diagnosis.misfit.misfit import misfit
     from blockshake.diagnosis.nominal.plan import plan_diagnosis
@@ -147,7 +147,7 @@ def measure_gain(folder, effort, files):
 
 def measure_shaken_gain(campaign, decision, effort, files):
     """`CampaignGain` of a campaign with base motion, see `measure_gain`."""
-    from blockshake.diagnosis.evidence.seen_campaign import see_campaign, see_sealed
+    from blockshake.diagnosis.evidence.reconstructed_campaign import reconstruct_campaign, reconstruct_sealed
     from blockshake.diagnosis.gain.campaign_gain import campaign_gain, with_rows
     from blockshake.diagnosis.gain.row_gain import row_gain
     from blockshake.diagnosis.gain.sensor_gain import sensor_gain
@@ -158,8 +158,8 @@ def measure_shaken_gain(campaign, decision, effort, files):
     findings = load_parity(files.parity).findings
     if not decision.parts:
         return sensor_gain(campaign, decision.tests, findings)
-    sealed = see_sealed(campaign)
-    rows = row_gain(decision, see_campaign(campaign).tests, sealed.tests)
+    sealed = reconstruct_sealed(campaign)
+    rows = row_gain(decision, reconstruct_campaign(campaign).tests, sealed.tests)
     if not files.extended:
         return with_rows(None, *rows)
     plan = plan_diagnosis(campaign.folder, effort)

@@ -10,7 +10,7 @@ from blockshake.pages.units import Printed, printed
 from blockshake.pages.wording import listed, number
 
 NO_ERROR = "no error to remove"
-_MANY = 1e6  # from which on odds are told in words
+_MANY = 1e6  # from which on odds are reported in words
 _ALONG_X = ("force", "impulse", "offset")
 _HIGH = 0.25  # of a body's height above its middle, from which on a force acts near the top
 

@@ -10,7 +10,7 @@ from scipy import fft
 
 from blockshake.dynamics.intensity import motion_figures
 from blockshake.dynamics.motion import CHANNELS, PITCH, ground_motion
-from blockshake.dynamics.print_rounding import may_be_rounding
+from blockshake.dynamics.quantisation import may_be_quantisation
 from blockshake.errors import InputError
 from blockshake.tables.numbers import plain_number
 from blockshake.validation import Positive
@@ -50,8 +50,8 @@ Baseline = Annotated[
 ]
 
 
-def settle(motion, baseline, where, published=False):
-    """The same motion with its baseline as asked for.
+def correct_baseline(motion, baseline, where, published=False):
+    """The same motion with its baseline as requested.
 
     Parameters
     ----------
@@ -68,9 +68,9 @@ def settle(motion, baseline, where, published=False):
     Returns
     -------
     GroundMotion
-        Its attribute ``baseline`` says in words how the record ends and what was done, with the peaks before and after.
-        A corrected motion starts with the zero pad before the record, and its attribute ``record_start`` is the time of
-        the record's first value [s]; other motions keep every bit.
+        Its attribute ``baseline`` states in words how the record ends and what was done, with the peaks before and
+        after. A corrected motion starts with the zero pad before the record, and its attribute ``record_start`` is the
+        time of the record's first value [s]; other motions keep every bit.
 
     Raises
     ------
@@ -82,8 +82,8 @@ def settle(motion, baseline, where, published=False):
     -----
     A record is at rest where all its components are: where the end velocity is at most 5 % of the peak velocity and the
     end displacement at most 20 % of the peak displacement, or where both may come from the rounding of the values
-    (`may_be_rounding`). A component is at rest elsewhere, after a permanent displacement, where the end velocity is as
-    small and the last quarter of the record moves by at most 5 % of the end displacement.
+    (`may_be_quantisation`). A component is at rest elsewhere, after a permanent displacement, where the end velocity is
+    as small and the last quarter of the record moves by at most 5 % of the end displacement.
 
     The correction is that of Boore (2005), On pads and filters: processing strong-motion data, Bull. Seism. Soc. Am.
     95: subtract the least-squares line; pad with zeros for ``1.5 order / corner`` at each end; high-pass by a
@@ -98,13 +98,13 @@ def settle(motion, baseline, where, published=False):
     if not published and baseline in (AUTO, NONE):
         return _with_words(motion, motion.attributes.get("baseline", NONE))
     if baseline == NONE:
-        return _with_words(motion, f"{NONE}, as asked for; the record {_ends(motion)}")
+        return _with_words(motion, f"{NONE}, as requested; the record {_ends(motion)}")
     if baseline == AUTO:
         rests = [_rest(motion, axis) for axis in _accelerations(motion)]
         if all(rests):
             return _with_words(motion, f"as published: the record {_ends(motion)}, {rests[0]}")
         return _corrected(motion, CORNER_FREQUENCY, where, "not at rest")
-    return _corrected(motion, baseline, where, "as asked for")
+    return _corrected(motion, baseline, where, "as requested")
 
 
 def check_samples(n_rows, time_step, pad, where):
@@ -177,7 +177,9 @@ def _rest(motion, axis):
     """How a component of a published record is at rest, in words; empty where it is not."""
     breaks, peaks = motion.table.breaks, motion_figures(motion, axis)
     velocity, displacement = _end(motion, axis)
-    if may_be_rounding(_accelerations(motion)[axis], breaks[-1] / (len(breaks) - 1), velocity, displacement):
+    if may_be_quantisation(
+        _accelerations(motion)[axis], breaks[-1] / (len(breaks) - 1), velocity, displacement
+    ):
         return "at rest within the rounding of its values"
     if abs(velocity) > _SLOW * peaks["peak_velocity"]:
         return ""

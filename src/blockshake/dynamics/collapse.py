@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.geometry.rotations import rotation_rows
 from blockshake.geometry.vectors import difference, dot, rows_product
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 
 # Cosine of the tilt from which a block does not come back.
 COSINE_OF_TILT = np.sqrt(0.5)
@@ -25,7 +25,7 @@ def collapse_limits(structure):
     return supported, 0.5 * np.array(smallest)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def find_collapsed(bodies, state, supported, drop_limit):
     """First body that has collapsed, or -1; ``supported``, ``drop_limit`` (n_bodies,) are those of `collapse_limits`.
 

@@ -35,9 +35,9 @@ def describe_motions(source, baseline, intensity=None):
         the latest [s]; ``synthetic`` where any is. Of chosen records also ``chosen`` and ``aim(bound, aimed_period)``:
         median and this less and plus a standard deviation, of the records and of the target [m/s2].
     """
-    asked = {"motion": source, "baseline": baseline, "scale": 1.0, "intensity": intensity}
+    wanted = {"motion": source, "baseline": baseline, "scale": 1.0, "intensity": intensity}
     drawn = DrawnMotions.of(
-        asked if intensity and intensity.get("spectrum") else {**asked, "intensity": None}
+        wanted if intensity and intensity.get("spectrum") else {**wanted, "intensity": None}
     )
     target, records = drawn.intensity.spectrum, drawn.records
     motions = [load_motion(record.path, baseline=baseline) for record in records]

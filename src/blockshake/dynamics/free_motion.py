@@ -2,17 +2,17 @@
 
 from blockshake.geometry.rotations import rotation_rows, turned
 from blockshake.geometry.vectors import columns_product, matrix_product, put_into, rows_product
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _spin(inverse_inertia, q, angular_momentum):
     """Angular velocity ``R J^-1 R^T L`` of one body, see `spin_into`."""
     R = rotation_rows(q)
     return rows_product(R, matrix_product(inverse_inertia, columns_product(R, angular_momentum)))
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def spin_into(inverse_inertia, orientation, angular_momentum, out):
     """Angular velocity ``R J^-1 R^T L`` of one body, world frame, written into ``out`` [rad/s].
 
@@ -22,7 +22,7 @@ def spin_into(inverse_inertia, orientation, angular_momentum, out):
     put_into(_spin(inverse_inertia, orientation, angular_momentum), out)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def drift_into(inverse_inertia, velocity, angular_momentum, spin_now, dt, position, orientation):
     """One body's pose a step later, from its momenta at half a step.
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 
 # Columns of a law
 COEFFICIENT, RATE_DROP, RATE_SCALE, SLIP_DROP, SLIP_SCALE, ASYMMETRY, N_LAW = 0, 1, 2, 3, 4, 5, 6
@@ -25,7 +25,7 @@ class FrictionLaws(NamedTuple):
 
 
 def assemble_friction(structure):
-    """Friction laws of a structure file; the coefficient alone acts unless it says more."""
+    """Friction laws of a structure file; the coefficient alone acts unless it states more."""
     file = structure.file
     names = list(file.materials)
     law = np.zeros((len(names), len(names), N_LAW))
@@ -45,7 +45,7 @@ def assemble_friction(structure):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def friction_coefficient(laws, a, b, slip_rate, slip):
     """Coulomb's coefficient of the joint of two bodies ``a`` and ``b``, before its direction is known [1].
 
@@ -72,7 +72,7 @@ def friction_coefficient(laws, a, b, slip_rate, slip):
     return mu
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def friction_asymmetry(laws, a, b):
     """Share by which the coefficient is larger for slip along +x of the joint's first body, smaller along -x [1]."""
     return laws.law[laws.material[a], laws.material[b], ASYMMETRY]

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from blockshake.dynamics.baseline import AUTO, NONE, settle
+from blockshake.dynamics.baseline import AUTO, NONE, correct_baseline
 from blockshake.dynamics.motion import GroundMotion, check_finite, ground_motion
 from blockshake.dynamics.records.at2 import is_at2, read_at2
 from blockshake.dynamics.records.contract_csv import kept_attributes, motion_of_arrays, read_motion_csv
@@ -59,8 +59,8 @@ def load_motion(
     scale : float
         Multiplies every column, not 0 [1].
     baseline : str or float
-        ``auto``, ``none`` or a corner frequency [Hz], as `settle` takes it: by default a record that does not end at
-        rest is corrected, and a CSV never is.
+        ``auto``, ``none`` or a corner frequency [Hz], as `correct_baseline` takes it: by default a record that does not
+        end at rest is corrected, and a CSV never is.
     channels : dict of str to str, optional
         By axis (``x``, ``y``, ``z``) the name of a record's channel, or its number in the file, from 1; a minus before
         it reverses the channel. By default the only channel is x.
@@ -75,7 +75,7 @@ def load_motion(
         Its time starts at zero: what the file gives as its first time is in the attribute
         ``first_time`` where it is another. The attributes of a record tell its ``format``, the entries of its header
         that were ``checked`` against the values, and what was ``assumed``; ``baseline`` and, of a corrected motion,
-        ``record_start`` are those of `settle`.
+        ``record_start`` are those of `correct_baseline`.
 
     Raises
     ------
@@ -117,7 +117,7 @@ def _read(source, baseline, channels, components):
     if not isinstance(source, (str, PathLike)):
         _check_no_record(channels, components, _ARRAYS)
         motion = _motion_of_rows(motion_of_arrays(source, _ARRAYS), _ARRAYS, "Python")
-        return settle(motion, baseline, _ARRAYS)
+        return correct_baseline(motion, baseline, _ARRAYS)
     path = named_file("motions", source)
     if path.suffix.lower() in (".yaml", ".yml"):
         _check_no_record(channels, components, path)
@@ -140,7 +140,7 @@ def _read(source, baseline, channels, components):
     if "time_s" in text.partition("\n")[0] or path.suffix.lower() == ".csv":
         motion = _motion_of_rows(read_motion_csv(text, path), path.name, "csv")
         kept = motion.attributes | kept_attributes(path, text)
-        return settle(replace(motion, attributes=kept), baseline, path)
+        return correct_baseline(replace(motion, attributes=kept), baseline, path)
     raise InputError(
         path, "",
         "expected a motion CSV (time_s, acceleration_x, ...), ESM/ITACA DYNA 1.2, PEER AT2, COSMOS V2, CSMIP V2, "
@@ -184,7 +184,7 @@ def _check_no_record(channels, components, path):
         wrong = f"expected for a record, or with --unit for a table; {path} is neither"
         raise InputError(Argument("channels"), "", wrong)
     if components:
-        raise InputError(Argument("components"), "", f"expected beside a record; {path} is none")
+        raise InputError(Argument("components"), "", f"expected with a record; {path} is none")
 
 
 def _record_motion(records, path, baseline, channels, components):
@@ -202,7 +202,7 @@ def _record_motion(records, path, baseline, channels, components):
         attributes["channels"] = ", ".join(f"{axis}: {record.channel}" for axis, record in records.items())
     motion = ground_motion(path.stem, time, columns, "acceleration", {**attributes, **first.metadata})
     check_finite(motion, path)
-    return settle(motion, baseline, path, published=True)
+    return correct_baseline(motion, baseline, path, published=True)
 
 
 def provenance(attributes):

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from scipy.interpolate import CubicSpline, PPoly
 
 from blockshake.errors import InputError
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 from blockshake.tables.shown import Shown
 
 CHANNELS = ("x", "y", "z", "pitch_y")
@@ -170,7 +170,7 @@ def rest_table():
     return MotionTable(np.array([0.0, 1.0]), np.zeros((1, 4, 4)))
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def find_segment(breaks, t, segment):
     """Index of the segment that holds ``t``, searched from the last one found.
 
@@ -183,7 +183,7 @@ def find_segment(breaks, t, segment):
     return segment
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def ground_state_into(table, segment, t, displacement, velocity):
     """Ground displacement and velocity at the time ``t`` [s] in a segment from `find_segment`, into two arrays (4,).
 

@@ -112,9 +112,12 @@ def mean_and_scatter(target, motions):
 
 def event_of(record, motion):
     """Event of a record: that of its table, else of the file's header, else the record itself."""
-    told = motion.attributes
+    chosen_words = motion.attributes
     # a header of PEER has name, date, station and direction, with commas between
-    named = told.get("event_id") or ",".join(str(told.get("event", "")).split(",")[:2]).strip().lower()
+    named = (
+        chosen_words.get("event_id")
+        or ",".join(str(chosen_words.get("event", "")).split(",")[:2]).strip().lower()
+    )
     return record.event or named or record.path
 
 

@@ -20,7 +20,7 @@ from blockshake.validation import Positive, Strict
 
 _FILE, _FACTORS, _EVENT, _OTHERS = "file", ("scale", "level"), "event", ("y", "z")
 _BEGINS = "record_start"  # s, attribute of a corrected motion
-_NO_MOTIONS = (".json", ".md", ".pdf", ".vt2", ".dt2")  # what lies beside records in a folder
+_NO_MOTIONS = (".json", ".md", ".pdf", ".vt2", ".dt2")  # what lies with records in a folder
 
 
 def _are_numbers(values):
@@ -39,7 +39,7 @@ class Intensity(Strict):
     levels: tuple[Positive, ...] = Field(
         (),
         description="rising, in `unit`: every sample is scaled to one of them, in turn; none leaves each motion as "
-        "strong as it is, or as its table or `spectrum` says",
+        "strong as it is, or as its table or `spectrum` states",
     )
     unit: Literal["m/s2", "cm/s2", "g", "m/s", "cm/s"] | None = Field(
         None,
@@ -187,14 +187,14 @@ class DrawnMotions:
         InputError
             As `read_records`, and levels both in the table and in the case.
         """
-        records, asked = read_records(case["motion"]), Intensity(**(case.get("intensity") or {}))
-        if asked.levels and any(one.level or one.scale != 1.0 for one in records):
-            raise InputError(case["motion"], "", "expected no scale and no level beside intensity.levels")
-        drawn = cls(records, case["baseline"], case["scale"], asked, {} if loaded is None else loaded)
-        if asked.spectrum is None:
+        records, target = read_records(case["motion"]), Intensity(**(case.get("intensity") or {}))
+        if target.levels and any(one.level or one.scale != 1.0 for one in records):
+            raise InputError(case["motion"], "", "expected no scale and no level with intensity.levels")
+        drawn = cls(records, case["baseline"], case["scale"], target, {} if loaded is None else loaded)
+        if target.spectrum is None:
             return drawn
         motions = [drawn._read(record) for record in records]
-        chosen = choose(asked.spectrum, records, motions, case["motion"], bool(asked.levels))
+        chosen = choose(target.spectrum, records, motions, case["motion"], bool(target.levels))
         return replace(drawn, records=chosen)
 
     def draw(self, sample, seed):

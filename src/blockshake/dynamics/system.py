@@ -10,7 +10,7 @@ from blockshake.dynamics.motion import PITCH
 from blockshake.geometry.rotations import rotation_rows, turned
 from blockshake.geometry.structure_file import signed_axis
 from blockshake.geometry.vectors import columns_product, dot
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 
 ENERGY_TERMS = (
     "kinetic",
@@ -86,7 +86,7 @@ class Stoppers(NamedTuple):
 
 @dataclass(frozen=True)
 class Rows:
-    """Record of a run at some of the times asked for, in their order; NaN after an abort."""
+    """Record of a run at some of the times requested, in their order; NaN after an abort."""
 
     time: np.ndarray  # float64 (n_times,) [s]
     # position, velocity, angular_velocity: float64 (n_times, n_bodies, 3); inertial frame [m, m/s, rad/s]
@@ -109,7 +109,7 @@ class Rows:
 
 @dataclass(frozen=True)
 class Trajectory(Rows):
-    """Rows until the last time asked for, and how the run ended."""
+    """Rows until the last time requested, and how the run ended."""
 
     status: Status
     reason: str  # why the run ended early or is not to be trusted; empty when completed
@@ -154,7 +154,7 @@ def _assemble_stoppers(structure):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def place_driven_into(bodies, displacement, velocity, state):
     """Put every driven body where the ground motion has it, with its velocity.
 
@@ -178,7 +178,7 @@ def place_driven_into(bodies, displacement, velocity, state):
             q[0], q[1], q[2], q[3] = turned(home[0], home[1], home[2], home[3], 0.0, displacement[PITCH], 0.0)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def kinetic_energy(bodies, velocity, angular_velocity, orientation):
     """Kinetic energy of the bodies that are not driven [J]; arrays as in `State`."""
     energy = 0.0
@@ -193,7 +193,7 @@ def kinetic_energy(bodies, velocity, angular_velocity, orientation):
     return energy
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def potential_energy(bodies, position):
     """Potential energy in gravity of the bodies that are not driven, zero at the origin [J]."""
     energy = 0.0

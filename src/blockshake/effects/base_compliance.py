@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from blockshake.effects.effect import Columns, Effect, EffectParameter
+from blockshake.effects.effect import DesignMatrix, Effect, EffectParameter
 from blockshake.effects.places import nowhere
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import DEEPEST_OVERLAP
@@ -79,7 +79,7 @@ def _extent(structure, chosen):
 
 def _turns(slab):
     """Rotation of the slab by the moment at its bottom."""
-    return [Columns({}, slab.moment[slab.at][:, None], (_SCALE,), False)]
+    return [DesignMatrix({}, slab.moment[slab.at][:, None], (_SCALE,), False)]
 
 
 EFFECT = Effect(
@@ -92,7 +92,7 @@ EFFECT = Effect(
         EffectParameter("compliance", "rad/(N m)", "rotation of the base by moment", 0.0, 0.0, 6e-9, 2e-9),
     ),
     confused_with=("table-pitch", "joint-compliance"),
-    told_apart_by="vertical displacement of two markers on the slab, apart along x, under blocks of another mass",
+    distinguished_by="vertical displacement of two markers on the slab, apart along x, under blocks of another mass",
     places=nowhere,
     act=_act,
     turns=_turns,

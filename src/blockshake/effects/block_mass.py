@@ -5,7 +5,7 @@ A lighter block is not tried: as an amplitude of either sign the column took up 
 
 import numpy as np
 
-from blockshake.effects.effect import Columns, Effect, EffectParameter
+from blockshake.effects.effect import DesignMatrix, Effect, EffectParameter
 from blockshake.effects.places import blocks
 from blockshake.forces.seen.wrench_histories import heavier
 
@@ -38,7 +38,7 @@ def _columns(seen, place):
     solid = seen.structure.solids[seen.structure.file.bodies[body].shape]
     above = place["height"] * float(np.ptp(solid.vertices[:, 2]))
     rows = seen.rows.along(heavier(seen, body, above))
-    return [Columns({}, rows[:, None], (_SCALE,), True)]
+    return [DesignMatrix({}, rows[:, None], (_SCALE,), True)]
 
 
 EFFECT = Effect(
@@ -49,7 +49,7 @@ EFFECT = Effect(
     source="Newton and Euler; densities scatter by 4 % in Zhou et al. (2023), Table 2",
     parameters=(EffectParameter("excess", "1", "of the mass over the stated one", 0.0, 0.0, 0.6, 0.2),),
     confused_with=("eccentricity",),
-    told_apart_by="weighing the block",
+    distinguished_by="weighing the block",
     places=blocks,
     seen_at=lambda structure: [{**place, "height": height} for place in blocks(structure) for height in HEIGHTS],
     act=_act,

@@ -1,8 +1,8 @@
-"""The mass centre of a block lies beside its middle."""
+"""The mass centre of a block lies off its middle."""
 
 import numpy as np
 
-from blockshake.effects.effect import Columns, Effect, EffectParameter
+from blockshake.effects.effect import DesignMatrix, Effect, EffectParameter
 from blockshake.effects.places import blocks
 from blockshake.forces.seen.wrench_histories import mass_centre_off
 
@@ -24,7 +24,7 @@ def _columns(seen, place):
     inertia = solid.properties.inertia / solid.properties.volume
     reach = np.sqrt(0.5 * np.trace(inertia) - inertia[0, 0]) - abs(structure.mass_offset[body, 0])
     rows = seen.rows.along(mass_centre_off(seen, body))
-    return [Columns({}, rows[:, None], (_SCALE,), False, float(reach))]
+    return [DesignMatrix({}, rows[:, None], (_SCALE,), False, float(reach))]
 
 
 EFFECT = Effect(
@@ -35,7 +35,7 @@ EFFECT = Effect(
     source="statics of a rigid block; inertia by the parallel-axis theorem",
     parameters=(EffectParameter("offset", "m", "of the mass centre along x", 0.0, -0.15, 0.15, 0.06),),
     confused_with=("stopper-contact", "marker-offset"),
-    told_apart_by="weighing the block on two supports; a test with the block turned about",
+    distinguished_by="weighing the block on two supports; a test with the block turned about",
     places=blocks,
     act=_act,
     columns=_columns,

@@ -50,7 +50,7 @@ class EffectParameter:
     visible: float
 
 
-class Columns(NamedTuple):
+class DesignMatrix(NamedTuple):
     """Rows of the forces that one variant of an effect makes in a test, given the measured motion."""
 
     values: dict  # str to float; parameters that are not amplitudes, at one point of their grid
@@ -76,19 +76,19 @@ class Effect:
     # the first is the size: at its null value nothing is changed, whatever the others
     parameters: tuple[EffectParameter, ...]
     confused_with: tuple[str, ...]  # names of effects that leave nearly the same
-    told_apart_by: str  # the measurement that tells them apart
+    distinguished_by: str  # the measurement that tells them apart
     places: Callable  # of a structure: where the effect may be, list of dict (``{}`` where it has no place)
     # of an experiment, the values by parameter name, and the place: the experiment with the effect
     act: Callable
-    # of a `SeenTest` and a place of the evidence: `Columns` of all variants of the effect there, the same
+    # of a `ReconstructedTest` and a place of the evidence: `DesignMatrix` of all variants of the effect there, the same
     # variants in every test. None where the effect shows elsewhere than in the forces of joints
     columns: Callable | None = None
     # of the structure: places of the evidence, those of ``places`` by default
     seen_at: Callable | None = None
-    # of a `SeenTest`, a place of the evidence and the values of a fit: the rows of that variant, (n_rows,
+    # of a `ReconstructedTest`, a place of the evidence and the values of a fit: the rows of that variant, (n_rows,
     # n_amplitudes). By default those of ``columns`` with these values
     variant: Callable | None = None
-    # turns, lifts: of a `SlabMotion`: `Columns` of its rotation, and covariances of its vertical displacement
+    # turns, lifts: of a `SlabMotion`: `DesignMatrix` of its rotation, and covariances of its vertical displacement
     turns: Callable | None = None
     lifts: Callable | None = None
     # of a variant's values, amplitudes, and places between two points of the grid, -0.5 to 0.5, float64

@@ -20,7 +20,7 @@ EFFECT = Effect(
     source="Zhou et al. (2023), Eq. (3); Newton's law of impact",
     parameters=(EffectParameter("increase", "1", "of the restitution", 0.0, 0.0, 0.45, 0.3),),
     confused_with=("reduced-bearing", "vertical-motion"),
-    told_apart_by="free rocking after a snap release: decay of successive peaks",
+    distinguished_by="free rocking after a snap release: decay of successive peaks",
     places=nowhere,
     act=_act,
 )

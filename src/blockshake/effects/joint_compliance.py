@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.effects.effect import Columns, Effect, EffectParameter
+from blockshake.effects.effect import DesignMatrix, Effect, EffectParameter
 from blockshake.effects.places import face_of, joints, stated_joint
 from blockshake.forces.seen.wrench_histories import bed_inset, edge_inward, normal_force
 
@@ -24,7 +24,7 @@ def _columns(seen, place):
     turn = np.maximum(np.abs(seen.joints.rotation[instant, face]), _SMALLEST)
     normal = np.maximum(normal_force(seen, face)[instant], 0.0)
     return [
-        Columns(
+        DesignMatrix(
             {"compliance": float(value)},
             (inward * bed_inset(normal, value, turn, seen.faces[face]))[:, None],
             None,
@@ -43,9 +43,9 @@ def rotation_by_compliance(lever, normal, half_width, length):
     Parameters
     ----------
     lever, normal : float64 arrays, shape (n_rows,)
-        Of the resultant from the middle [m], and its normal force [N].
+        For the resultant from the middle [m], and its normal force [N].
     half_width, length : float
-        Of the face along and across the lever [m].
+        The face along and across the lever [m].
     """
     second_moment = length * (2.0 * half_width) ** 3 / 12.0
     away = np.minimum(np.abs(lever), 0.99 * half_width)
@@ -57,13 +57,13 @@ EFFECT = Effect(
     name="joint-compliance",
     title="soft joint",
     acts="contact",
-    equation="closure of the joint = c pressure, beside what the blocks give",
+    equation="closure of the joint = c pressure, next to what the blocks give",
     source="Winkler's bed, 1 to 5 GPa/m for dry joints of stone",
     parameters=(
         EffectParameter("compliance", "m3/N", "closure of the joint by pressure", 0.0, 0.0, 6e-10, 3e-10),
     ),
     confused_with=("table-pitch", "clock-lag"),
-    told_apart_by="rotation of the joint in a test below uplift; vertical displacement of the slab's markers",
+    distinguished_by="rotation of the joint in a test below uplift; vertical displacement of the slab's markers",
     places=joints,
     act=_act,
     columns=_columns,

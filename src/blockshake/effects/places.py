@@ -5,7 +5,7 @@ from blockshake.measurement.motion.joints import find_joints
 
 
 def stated_joint(experiment, place):
-    """Entry of a joint in the structure of an experiment, defaults where the structure file says nothing."""
+    """Entry of a joint in the structure of an experiment, defaults where the structure file states nothing."""
     for joint in experiment.structure.file.joints:
         if sorted(joint.bodies) == sorted(place["joint"]):
             return joint

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from blockshake.effects.effect import Columns, Effect, EffectParameter
+from blockshake.effects.effect import DesignMatrix, Effect, EffectParameter
 from blockshake.effects.places import face_of, joints, nowhere
 from blockshake.forces.seen.wrench_histories import edge_inward
 
@@ -47,13 +47,13 @@ def _columns(seen, place):
         sum(inset * share**power for inset, share in zip(insets, shares, strict=True)) for power in (1, 2)
     ]
     variants = [
-        Columns({"inset": "alike"}, plain[:, None], (_SCALE,), True, most),
-        Columns({"inset": "rolling"}, np.stack([plain, *rolled], axis=1), (_SCALE,) * 3, True, most),
+        DesignMatrix({"inset": "alike"}, plain[:, None], (_SCALE,), True, most),
+        DesignMatrix({"inset": "rolling"}, np.stack([plain, *rolled], axis=1), (_SCALE,) * 3, True, most),
     ]
     if place:
         shape = np.stack([plain, *(plain * ramp for ramp in _ramps(turns[0]))], axis=1)
         scales = (_SCALE,) + (_STEP,) * (len(_KNOTS) - 1)
-        variants.append(Columns({"inset": "by rotation"}, shape, scales, True, most))
+        variants.append(DesignMatrix({"inset": "by rotation"}, shape, scales, True, most))
     return variants
 
 
@@ -71,7 +71,7 @@ EFFECT = Effect(
     source="Housner (1963) with the half width b - r",
     parameters=(EffectParameter("inset", "m", "of the edge", 0.0, 0.0, 0.15, 0.06),),
     confused_with=("impact-restitution",),
-    told_apart_by="onset of rocking at several intensities; contact prints on the faces",
+    distinguished_by="onset of rocking at several intensities; contact prints on the faces",
     places=nowhere,
     act=_act,
     columns=_columns,

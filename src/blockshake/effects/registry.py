@@ -51,7 +51,7 @@ def with_effect(experiment, name, values, place):
     ----------
     experiment : Experiment
     name : str
-        Of `EFFECTS`.
+        `EFFECTS`.
     values : dict of str to float
         By parameter; one that is left out has its null value.
     place : dict

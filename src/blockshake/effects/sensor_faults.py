@@ -19,7 +19,7 @@ _CLOCK_LAG = Effect(
         EffectParameter("lag", "s", "of the optical clock behind the accelerometers'", 0.0, -0.03, 0.03, 0.01),
     ),
     confused_with=("joint-compliance",),
-    told_apart_by="phase between a marker and an accelerometer on the same body",
+    distinguished_by="phase between a marker and an accelerometer on the same body",
     places=nowhere,
     act=_clock_lag,
 )  # fmt: skip
@@ -41,14 +41,14 @@ _SENSOR_GAIN = Effect(
     source="scale error of a camera, by definition",
     parameters=(EffectParameter("error", "1", "relative error of the gain", 0.0, -0.1, 0.1, 0.03),),
     confused_with=("marker-offset",),
-    told_apart_by="rigid fit of at least four markers of the block; a test in which the blocks do not move",
+    distinguished_by="rigid fit of at least four markers of the block; a test in which the blocks do not move",
     places=markers,
     act=_sensor_gain,
 )
 
 
 def _marker_offset(experiment, values, place):
-    """One marker sits elsewhere on its block than the structure says."""
+    """One marker sits elsewhere on its block than in the structure ."""
     offsets, name = experiment.instruments.marker_offset, place["marker"]
     x, y, z = offsets.get(name, (0.0, 0.0, 0.0))
     return experiment.with_instruments(marker_offset={**offsets, name: (x, y, z + values["height"])})
@@ -62,7 +62,7 @@ _MARKER_OFFSET = Effect(
     source="rigid-body kinematics",
     parameters=(EffectParameter("height", "m", "of the marker above its stated place", 0.0, -0.1, 0.1, 0.05),),
     confused_with=("sensor-gain", "eccentricity"),
-    told_apart_by="rigid fit of at least four markers of the block while it rotates",
+    distinguished_by="rigid fit of at least four markers of the block while it rotates",
     places=markers,
     act=_marker_offset,
 )  # fmt: skip
@@ -82,7 +82,7 @@ _SENSOR_DRIFT = Effect(
     source="creep of a camera, a mount or an amplifier, by definition",
     parameters=(EffectParameter("rate", "m/s", "of the zero along x", 0.0, -5e-4, 5e-4, 2e-4),),
     confused_with=("sensor-gain", "marker-offset"),
-    told_apart_by="readings before and after the shaking; rigid fit of at least four markers of the block",
+    distinguished_by="readings before and after the shaking; rigid fit of at least four markers of the block",
     places=markers,
     act=_sensor_drift,
 )
@@ -102,7 +102,7 @@ _SENSOR_SATURATION = Effect(
     source="end of a camera's view or of an amplifier, by definition",
     parameters=(EffectParameter("range", "m", "beyond which nothing is read", 1.0, 0.005, 1.0, 0.05),),
     confused_with=("sensor-gain",),
-    told_apart_by="readings that stand still at one value in several tests",
+    distinguished_by="readings that stand still at one value in several tests",
     places=markers,
     act=_sensor_saturation,
 )

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.effects.effect import Columns, Effect, EffectParameter
+from blockshake.effects.effect import DesignMatrix, Effect, EffectParameter
 from blockshake.effects.places import blocks, stops
 from blockshake.forces.seen.point_rows import point_rows
 
@@ -37,7 +37,9 @@ def _columns(seen, place):
     """Springs beyond a gap on either side, all gaps of one side first."""
     point = point_rows(seen, place["body"], place["height"])
     return [
-        Columns({"gap": float(gap), "side": side}, spring_rows(point, side, gap)[:, None], (_SCALE,), True)
+        DesignMatrix(
+            {"gap": float(gap), "side": side}, spring_rows(point, side, gap)[:, None], (_SCALE,), True
+        )
         for side in (1, -1)
         for gap in _GAPS
     ]
@@ -85,7 +87,7 @@ EFFECT = Effect(
         EffectParameter("gap", "m", "clearance at the start", 0.02, 0.002, 0.06, 0.015),
     ),
     confused_with=("eccentricity",),
-    told_apart_by="accelerometer on the block: spikes at the same displacement",
+    distinguished_by="accelerometer on the block: spikes at the same displacement",
     places=stops,
     act=_act,
     columns=_columns,

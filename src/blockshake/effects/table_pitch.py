@@ -7,7 +7,7 @@ import scipy
 from scipy.interpolate import CubicSpline
 
 from blockshake.dynamics.motion import CHANNELS
-from blockshake.effects.effect import Columns, Effect, EffectParameter
+from blockshake.effects.effect import DesignMatrix, Effect, EffectParameter
 from blockshake.effects.places import nowhere
 from blockshake.errors import InputError
 
@@ -27,7 +27,7 @@ def _turns(slab):
         for frequency in _FREQUENCIES:
             turn = _response(slab.acceleration, slab.step, frequency, damping)[slab.at]
             values = {"frequency": float(frequency), "damping": damping}
-            variants.append(Columns(values, turn[:, None], (_SCALE,), False))
+            variants.append(DesignMatrix(values, turn[:, None], (_SCALE,), False))
     return variants
 
 
@@ -73,7 +73,7 @@ EFFECT = Effect(
         EffectParameter("frequency", "Hz", "of the table's pitching", 15.0, 5.0, 30.0, 15.0),
     ),
     confused_with=("joint-compliance",),
-    told_apart_by="vertical displacement of two markers on the slab, apart along x",
+    distinguished_by="vertical displacement of two markers on the slab, apart along x",
     places=nowhere,
     act=_act,
     turns=_turns,

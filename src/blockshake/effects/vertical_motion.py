@@ -36,7 +36,7 @@ EFFECT = Effect(
         EffectParameter("delay", "s", "of the vertical motion", 0.0, -0.2, 0.2, 0.0),
     ),
     confused_with=("impact-restitution",),
-    told_apart_by="vertical accelerometer on the slab",
+    distinguished_by="vertical accelerometer on the slab",
     places=nowhere,
     act=_act,
     lifts=_lifts,

@@ -16,11 +16,11 @@ def fit_locally(times, readings, at, width, degree=2):
     readings : float64 array, shape (n_readings, n_channels)
         NaN is a gap.
     at : float64 array, shape (n_times,)
-        Where it is asked for [s].
+        Where it is requested [s].
     width : float
         Standard deviation of the kernel [s].
     degree : int
-        Of the polynomial: 2, or 0 for a mean with positive weights.
+        For the polynomial: 2, or 0 for a mean with positive weights.
 
     Returns
     -------

@@ -72,7 +72,7 @@ def spread(mapping, source):
     Notes
     -----
     The middle of the wall stands over that of the body below the first course, plus the entry's offset. Places are in
-    widths of the body, so that the copies follow a changed size. Copies beside each other touch where there is no gap.
+    widths of the body, so that the copies follow a changed size. Copies next to each other touch where there is no gap.
     """
     bodies = mapping.get("bodies")
     if not isinstance(bodies, (list, tuple)):

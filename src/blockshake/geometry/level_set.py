@@ -4,12 +4,12 @@ from math import copysign
 
 import numpy as np
 
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 
 HALF_SQRT2 = np.sqrt(0.5)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def box_distance(x, y, z, a, b, c, chamfer):
     """Level-set value and unit gradient of a chamfered box at a point.
 
@@ -37,7 +37,7 @@ def box_distance(x, y, z, a, b, c, chamfer):
     return _nearest_face(x, y, z, abs(x) - a, abs(y) - b, abs(z) - c, chamfer)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def hollow_depth(u, v, hollow):
     """Depth of a hollow face below its perimeter: ``hollow (1 - u^2)^2 (1 - v^2)^2``, without a kink there [m].
 
@@ -48,7 +48,7 @@ def hollow_depth(u, v, hollow):
     return hollow * ((p * p) * (q * q))
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def hollow_box_distance(x, y, z, a, b, c, chamfer, hollow):
     """Level-set value and normal of a chamfered box whose six faces are hollow, by arguments of `box_distance`.
 
@@ -63,7 +63,7 @@ def hollow_box_distance(x, y, z, a, b, c, chamfer, hollow):
     return _nearest_face(x, y, z, fx, fy, fz, chamfer)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _nearest_face(x, y, z, fx, fy, fz, chamfer):
     """Level-set value and normal of the face that is nearest, from the distances out of the flats' planes [m]."""
     x_over_y, x_over_z, y_over_z = fx >= fy, fx >= fz, fy >= fz

@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.geometry.meshes.mesh_distance import lattice_distances
 from blockshake.geometry.polyhedron import box_vertices, convex_polyhedron, triangles
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 
 _MARGIN = 2  # cells beyond the bounding box on every side
 # Below this the gradient, in m a cell, is none: on a medial axis, where no normal exists.
@@ -152,7 +152,7 @@ def _steepest(grid):
     return max(1.0, float(np.sqrt(steepest)) / grid.spacing)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def locate(x, y, z, first, ox, oy, oz, n_x, n_y, n_z, inverse_spacing):
     """Cell of a point, clamped to the grid.
 
@@ -185,7 +185,7 @@ def locate(x, y, z, first, ox, oy, oz, n_x, n_y, n_z, inverse_spacing):
     return first + (i * n_y + j) * n_z + k, cu - i, cv - j, cw - k, beyond
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def corner_values(values, at, n_y, n_z):
     """Values at the eight corners of a cell, z fastest [m]."""
     # an unsigned index spares the look for a negative one
@@ -199,7 +199,7 @@ def corner_values(values, at, n_y, n_z):
     return c000, c001, c010, c011, c100, c101, c110, c111
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def interpolate(c000, c001, c010, c011, c100, c101, c110, c111, fx, fy, fz, beyond, inverse_spacing):
     """Level-set value, unit gradient and its length from a cell's corners; arguments as `locate` gives them."""
     d00, d01, d10, d11 = c001 - c000, c011 - c010, c101 - c100, c111 - c110
@@ -220,7 +220,7 @@ def interpolate(c000, c001, c010, c011, c100, c101, c110, c111, fx, fy, fz, beyo
     return bound if beyond > 0.0 else phi, gx * scale, gy * scale, gz * scale, slope
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def grid_distance(x, y, z, values, first, ox, oy, oz, n_x, n_y, n_z, inverse_spacing):
     """Level-set value, unit gradient and its length of a sampled shape at a point.
 

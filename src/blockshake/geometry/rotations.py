@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def rotation_rows(q):
     """Rows of the rotation matrix of a unit quaternion (w, x, y, z), body to world, as three tuples of three."""
     w, x, y, z = q[0], q[1], q[2], q[3]
@@ -16,7 +16,7 @@ def rotation_rows(q):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def rotation_matrix_into(q, R):
     """Rotation matrix of a unit quaternion (w, x, y, z), body to world, written into ``R`` (3, 3)."""
     first, second, third = rotation_rows(q)
@@ -25,7 +25,7 @@ def rotation_matrix_into(q, R):
     R[2, 0], R[2, 1], R[2, 2] = third
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def turned(w, x, y, z, rx, ry, rz):
     """Unit quaternion ``w, x, y, z`` turned further by a world-frame rotation vector ``rx, ry, rz`` [rad]."""
     angle = np.sqrt(rx * rx + ry * ry + rz * rz)
@@ -44,7 +44,7 @@ def turned(w, x, y, z, rx, ry, rz):
     return nw / norm, nx / norm, ny / norm, nz / norm
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def rotate_into(q, rotation, out):
     """Quaternion ``q`` turned further by a world-frame rotation vector [rad], written into ``out``, which may be ``q``.
 

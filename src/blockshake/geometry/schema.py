@@ -144,7 +144,7 @@ class Body(Strict):
 
     @model_validator(mode="before")
     @classmethod
-    def _beside_none(cls, given):
+    def _needs_no_offset(cls, given):
         if isinstance(given, dict) and given.get("on") is not None:
             return {"offset": (0.0, 0.0, 0.0)} | given
         return given
@@ -284,7 +284,7 @@ class StructureFile(Strict):
     description: str = Field("", description="a sentence for reports")
     extension: str = Field(
         "",
-        description="the cause that this structure has beside a nominal one, in words; a study's variables "
+        description="the cause that this structure has next to a nominal one, in words; a study's variables "
         "`extension.NAME`, NAME a parameter, are of such structures alone",
         exclude_if=lambda given: not given,  # a structure without any keeps its digest
     )

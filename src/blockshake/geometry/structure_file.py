@@ -45,7 +45,7 @@ def replace_into(mapping, key, value, source):
             raise InputError(source, key, "expected joints.BODY.BODY.KEY")
         entry = _entry_of_pair(mapping, "joints", "bodies", parts)
         if entry is None:
-            # two bodies have a joint whether the file says something of it or not
+            # two bodies have a joint whether the file mentions it or not
             entry = {"bodies": parts[1:3]}
             mapping["joints"] = [*mapping.get("joints", ()), entry]
         entry[parts[3]] = value

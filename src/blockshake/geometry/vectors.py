@@ -1,9 +1,9 @@
 """Products of three numbers, without arrays in between: vectors are anything with three entries, answers are tuples."""
 
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def matrix_product(A, x):
     """``A x`` for a matrix of three rows and columns."""
     return (
@@ -13,7 +13,7 @@ def matrix_product(A, x):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def transposed_product(A, x):
     """``A^T x``: world to body for a rotation; to the world from a contact's basis, whose rows are its axes."""
     return (
@@ -23,25 +23,25 @@ def transposed_product(A, x):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def cross(x, y):
     """``x`` cross ``y``."""
     return (x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0])
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def dot(x, y):
     """``x`` times ``y``."""
     return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def difference(x, y):
     """``x`` less ``y``."""
     return x[0] - y[0], x[1] - y[1], x[2] - y[2]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def add_impulse_into(sign, f, arm, total):
     """Add ``sign`` times an impulse, or a force, at ``arm``, and its moment, to ``total`` (6,)."""
     moment = cross(arm, f)
@@ -50,13 +50,13 @@ def add_impulse_into(sign, f, arm, total):
         total[3 + axis] += sign * moment[axis]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def rows_product(rows, x):
     """``R x`` for a matrix given by its rows, three tuples."""
     return dot(rows[0], x), dot(rows[1], x), dot(rows[2], x)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def columns_product(rows, x):
     """``R^T x`` for a matrix given by its rows, three tuples."""
     first, second, third = rows
@@ -67,13 +67,13 @@ def columns_product(rows, x):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def put_into(x, out):
     """Copy three numbers into an array."""
     out[0], out[1], out[2] = x[0], x[1], x[2]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def tensor_in_world_into(R, A, out):
     """``R A R^T``: a symmetric body-frame tensor in the world frame, written into ``out``."""
     for i in range(3):
@@ -82,7 +82,7 @@ def tensor_in_world_into(R, A, out):
             out[i, j] = row[0] * R[j, 0] + row[1] * R[j, 1] + row[2] * R[j, 2]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def velocity_at(v, arm):
     """Velocity [m/s] of a body's point at ``arm`` from its mass centre; ``v`` (6,): velocity and spin."""
     return (
@@ -92,7 +92,7 @@ def velocity_at(v, arm):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def copy_into(given, out):
     """Write an array of one to three dimensions over another one, or over the first entries of one with more room."""
     if given.ndim == 1:

@@ -72,7 +72,7 @@ def add_data_commands(add):
 
 
 def add_baseline(command):
-    """Add the option that says what is done to the baseline of a motion."""
+    """Add the option that states what is done to the baseline of a motion."""
     command.add_argument(
         "--baseline", default="auto", metavar="auto|none|HZ",
         help="auto (default) corrects a record that does not end at rest, none nothing, and a corner frequency any "
@@ -147,11 +147,11 @@ def _import_campaign(options):
         if len(options.sources) > 1 or more:
             wrong = "expected the map alone; its keys say all that options say"
             raise InputError(*((Argument(more[0]), where) if more else (where, "")), wrong)
-        asked = load_map(where)
+        import_map = load_map(where)
     else:
-        asked, where = _map_of_options(options, given, columns), _MADE
-    print("\n".join(make_campaign(asked, options.output, where)))
-    print(f"{options.output}: {len(asked.tests)} tests imported")
+        import_map, where = _map_of_options(options, given, columns), _MADE
+    print("\n".join(make_campaign(import_map, options.output, where)))
+    print(f"{options.output}: {len(import_map.tests)} tests imported")
 
 
 def _map_of_options(options, given, columns):

@@ -45,13 +45,13 @@ def convert_motion(
     components : dict of str to path, optional
         By axis the files of a record's other components, as of `load_motion`.
     unit : str, optional
-        Of a table's values, such as ``g`` or ``cm/s2``: accelerations, velocities or displacements.
+        For a table's values, such as ``g`` or ``cm/s2``: accelerations, velocities or displacements.
     time, time_unit : str, optional
         Column of a table's times, by default ``time_s``, and their unit, by default s.
     step : float, optional
         Between the rows of a table without times [s]; without ``columns`` all values in order are x.
     layout : dict of str to value, optional
-        Of a table: ``separator``, ``decimal`` sign, line of the ``header`` and first line of ``data``.
+        For a table: ``separator``, ``decimal`` sign, line of the ``header`` and first line of ``data``.
 
     Returns
     -------
@@ -94,7 +94,7 @@ def _of_table(source, baseline, columns, components, given, layout):
         wrong = "expected for a table; the unit and the columns are never guessed"
         raise InputError(Argument("unit"), "", wrong)
     if components:
-        raise InputError(Argument("components"), "", "expected beside a record, not a table")
+        raise InputError(Argument("components"), "", "expected with a record, not a table")
     if step is not None and (time or time_unit):
         raise InputError(Argument("step"), "", "expected where there are no times")
     if not columns and step is None:

@@ -77,19 +77,19 @@ def import_campaign(source: AnyPath | Mapping[str, Any], output: AnyPath) -> Cam
     """
     if isinstance(source, Mapping):
         where: str = Argument("source")
-        asked = validated(ImportMap, dict(source), where)
+        import_map = validated(ImportMap, dict(source), where)
     else:
-        asked, where = load_map(source), str(source)
-    make_campaign(asked, output, where)
+        import_map, where = load_map(source), str(source)
+    make_campaign(import_map, output, where)
     return load_campaign(output)
 
 
-def make_campaign(asked, folder, where):
+def make_campaign(import_map, folder, where):
     """Make the folder of a campaign from an `ImportMap`.
 
     Parameters
     ----------
-    asked : ImportMap
+    import_map : ImportMap
     folder : str or path
         That is not there yet, or empty.
     where : str
@@ -98,7 +98,7 @@ def make_campaign(asked, folder, where):
     Returns
     -------
     list of str
-        What `campaign_lines` says of the campaign.
+        What `campaign_lines` states of the campaign.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def make_campaign(asked, folder, where):
     folder = Path(folder)
     with replacing_folder(folder) as made:
         try:
-            _fill(asked, made, where)
+            _fill(import_map, made, where)
             lines = campaign_lines(made)
         except InputError as error:
             said = type(error.where)(error.where.replace(str(made), str(folder)))
@@ -117,22 +117,22 @@ def make_campaign(asked, folder, where):
     return [line.replace(str(made), str(folder)) for line in lines]
 
 
-def _fill(asked, folder, where):
+def _fill(import_map, folder, where):
     """Write all files of the campaign."""
-    structure = load_structure(asked.structure)
+    structure = load_structure(import_map.structure)
     tests, motions = [], {}
-    for test in asked.tests:
+    for test in import_map.tests:
         name = re.sub(r"[^\w.-]+", "-", test.name)
         if test.motion is None:
-            write_text(folder / f"{name}.csv", _posed_table(test, asked, structure, where))
+            write_text(folder / f"{name}.csv", _posed_table(test, import_map, structure, where))
             tests.append({**test.model_dump(exclude={"motion", "scale"}), "file": f"{name}.csv"})
             continue
         load_motion(test.motion, test.scale, test.baseline)
         if motions.setdefault(Path(test.motion).name, test.motion) != test.motion:
             key = f"tests.{test.name}.motion"
             raise InputError(where, key, "expected motions in files of different names")
-        readings = _read_readings(test, asked, structure, where)
-        with _by_key(asked, where):
+        readings = _read_readings(test, import_map, structure, where)
+        with _by_key(import_map, where):
             readings = checked_test(readings, structure, test.file)
         title = f"measured test {test.name}"
         sources = ", ".join(Path(one).name for one in (test.file, test.accelerometers) if one)
@@ -141,13 +141,15 @@ def _fill(asked, folder, where):
         write_dataset(folder / f"{name}.nc", readings)
         motion = motion_in_folder(test.motion, folder)
         tests.append({**test.model_dump(), "file": f"{name}.nc", "motion": motion})
-    header = f"# imported from {', '.join(dict.fromkeys(Path(test.file).name for test in asked.tests))}\n"
-    inside = structure_in_folder(asked.structure, structure, folder)
-    write_campaign_file(folder, header, asked.name, inside, asked.sensors.model_dump(), tests)
+    header = (
+        f"# imported from {', '.join(dict.fromkeys(Path(test.file).name for test in import_map.tests))}\n"
+    )
+    inside = structure_in_folder(import_map.structure, structure, folder)
+    write_campaign_file(folder, header, import_map.name, inside, import_map.sensors.model_dump(), tests)
 
 
 @contextlib.contextmanager
-def _by_key(asked, where, key=None):
+def _by_key(import_map, where, key=None):
     """Name the key of the map, ``key`` or what the fault names, of all faults but those of a line or a whole file."""
     try:
         yield
@@ -158,7 +160,7 @@ def _by_key(asked, where, key=None):
             wrong = f"{error.where}: {error.expected}"
             raise InputError(where, f"layout.{error.key}", wrong) from None
         if key is None:
-            mapped = [f"columns.{one}" for one in asked.columns if f"{one}.".startswith(f"{error.key}.")]
+            mapped = [f"columns.{one}" for one in import_map.columns if f"{one}.".startswith(f"{error.key}.")]
             mapped += ["time"] * error.key.startswith("time")
             mapped += ["displacement_unit"] * error.key.endswith("_displacement")
             key = (*mapped, "columns")[0]
@@ -167,21 +169,23 @@ def _by_key(asked, where, key=None):
         raise InputError(where, key, str(error)) from None
 
 
-def _read_readings(test, asked, structure, where):
+def _read_readings(test, import_map, structure, where):
     """Readings of one test, as a campaign's file has them; NaN along directions without a column."""
-    channels = [name for name in asked.columns if name in accelerometer_channels(structure)]
-    transducers = [name for name in asked.columns if name in transducer_names(structure)]
-    markers = [name for name in asked.columns if name not in (*channels, *transducers)]
+    channels = [name for name in import_map.columns if name in accelerometer_channels(structure)]
+    transducers = [name for name in import_map.columns if name in transducer_names(structure)]
+    markers = [name for name in import_map.columns if name not in (*channels, *transducers)]
     if not markers:
         raise InputError(where, "columns", "expected a column of a marker, MARKER.x, or of a pose, BODY.x")
     posed = [key for key in markers if _is_pose(key, structure)]
     markers = [key for key in markers if key not in posed]
     source = test.accelerometers or test.file
-    for names in ([*markers, *posed], [*channels, *transducers]) if source != test.file else (asked.columns,):
-        _check_once(names, asked, where)
-    time, read, lost = _displacements(test.file, markers, asked, where) if markers else (None, {}, "")
+    for names in (
+        ([*markers, *posed], [*channels, *transducers]) if source != test.file else (import_map.columns,)
+    ):
+        _check_once(names, import_map, where)
+    time, read, lost = _displacements(test.file, markers, import_map, where) if markers else (None, {}, "")
     for body in dict.fromkeys(key.rpartition(".")[0] for key in posed):
-        time, filmed = _markers_of_poses(test.file, body, posed, asked, structure, where)
+        time, filmed = _markers_of_poses(test.file, body, posed, import_map, structure, where)
         for name in filmed.keys() & read.keys():
             wrong = f"expected none; {name} is read from the poses of {body}"
             raise InputError(where, f"columns.{name}.x", wrong)
@@ -198,10 +202,10 @@ def _read_readings(test, asked, structure, where):
     ):
         if not sensors:
             continue
-        time_acc, read = _columns_of(source, sensors, asked, kind, where)
+        time_acc, read = _columns_of(source, sensors, import_map, kind, where)
         if kind == "displacement":
             for column, key in zip(read.T, sensors, strict=True):
-                column -= _rest(time_acc, column, asked, where, f"{source}: {key}")
+                column -= _rest(time_acc, column, import_map, where, f"{source}: {key}")
         known = np.isfinite(read).any(axis=0)
         if known.any():
             variables[variable] = (("time_acc", dimension), read[:, known], {"units": unit})
@@ -210,12 +214,12 @@ def _read_readings(test, asked, structure, where):
     return xr.Dataset(variables, coordinates, {"lost_markers": lost} if lost else {})
 
 
-def _displacements(source, keys, asked, where):
+def _displacements(source, keys, import_map, where):
     """Times, displacements (n_times, 3) [m] by marker, from its own columns, and a line on each marker that was lost.
 
     Displacements are NaN along axes without a column, and where a marker was lost.
     """
-    time, readings = _columns_of(source, keys, asked, "displacement", where)
+    time, readings = _columns_of(source, keys, import_map, "displacement", where)
     zeros, found = _zeros_of_lost(keys, readings), {}
     readings[zeros] = np.nan
     lost = {key.rpartition(".")[0]: rows for key, rows in zip(keys, zeros.T, strict=True) if rows.any()}
@@ -225,7 +229,7 @@ def _displacements(source, keys, asked, where):
             known = "MARKER.x, MARKER.y, MARKER.z, an accelerometer channel or a displacement transducer"
             raise InputError(where, f"columns.{key}", f"expected {known}")
         values = found.setdefault(name, np.full((len(time), len(AXES)), np.nan))
-        values[:, AXES.index(axis)] = column - _rest(time, column, asked, where, f"{source}: {key}")
+        values[:, AXES.index(axis)] = column - _rest(time, column, import_map, where, f"{source}: {key}")
     return (
         time,
         found,
@@ -259,44 +263,44 @@ def _is_pose(key, structure):
     return name in structure.body_names and name not in markers and part in (*AXES, ANGLE, *_TURNS)
 
 
-def _markers_of_poses(source, body, posed, asked, structure, where):
+def _markers_of_poses(source, body, posed, import_map, structure, where):
     """Times, and displacements (n_times, 3) [m] of all markers of a body, from its poses."""
     own = [marker for marker in structure.file.markers if marker.body == body]
     if not own:
         raise InputError(where, f"columns.{body}.x", f"expected markers of {body} in the structure")
     keys = [key for key in posed if key.startswith(f"{body}.")]
-    time, columns = _pose_columns(source, body, keys, asked, where)
-    with _by_key(asked, where):
+    time, columns = _pose_columns(source, body, keys, import_map, where)
+    with _by_key(import_map, where):
         position, rotation, _ = poses_of_columns(columns, source, body)
     found = {}
     for marker in own:
         place = position + rotation @ np.array(marker.position)
         start = place[np.isfinite(place[:, 0]).argmax()]
-        if asked.rest:
-            start = [_rest(time, column, asked, where, f"{source}: {body}.x") for column in place.T]
+        if import_map.rest:
+            start = [_rest(time, column, import_map, where, f"{source}: {body}.x") for column in place.T]
         found[marker.name] = place - start
     return time, found
 
 
-def _pose_columns(source, body, keys, asked, where):
+def _pose_columns(source, body, keys, import_map, where):
     """Times, and columns by key of a body's pose, in m and rad."""
     places = [f"{body}.{axis}" for axis in AXES]
     turns = [f"{body}.{ANGLE}", *(f"{body}.{part}" for part in _TURNS)]
     for key in keys:
-        if key in turns[1:] and (asked.columns[key].unit or asked.rotation_unit != "rad"):
+        if key in turns[1:] and (import_map.columns[key].unit or import_map.rotation_unit != "rad"):
             raise InputError(where, f"columns.{key}", "expected a quaternion's column without unit")
-    _check_frame(body, keys, asked, where)
+    _check_frame(body, keys, import_map, where)
     columns = {}
     for names, kind in ((places, "displacement"), (turns, "rotation")):
         mapped = [name for name in names if name in keys]
         if not mapped:
             raise InputError(where, "columns", f"expected a column of {body} among {', '.join(names)}")
-        time, values = _columns_of(source, mapped, asked, kind, where)
+        time, values = _columns_of(source, mapped, import_map, kind, where)
         columns |= dict(zip(mapped, values.T, strict=True))
     return time, columns
 
 
-def _check_frame(body, keys, asked, where):
+def _check_frame(body, keys, import_map, where):
     """Refuse a map whose places and quaternions do not turn together from the file's frame into x, y, z.
 
     A map of places is a signed permutation of the file's axes, which the last letters of the columns name. The map is
@@ -305,11 +309,11 @@ def _check_frame(body, keys, asked, where):
     places, turns = ([f"{body}.{part}{axis}" for axis in AXES] for part in ("", "q"))
     if not {*places, *turns, f"{body}.qw"} <= set(keys):
         return
-    place, turn = (_signed_axes([asked.columns[key] for key in names]) for names in (places, turns))
-    conjugate = 1 - 2 * asked.columns[f"{body}.qw"].reversed
+    place, turn = (_signed_axes([import_map.columns[key] for key in names]) for names in (places, turns))
+    conjugate = 1 - 2 * import_map.columns[f"{body}.qw"].reversed
     if not place.any() or not turn.any():  # letters that are no axes: signs alone
         place, turn = (
-            np.diag([1 - 2 * asked.columns[key].reversed for key in names]) for names in (places, turns)
+            np.diag([1 - 2 * import_map.columns[key].reversed for key in names]) for names in (places, turns)
         )
         place = (
             conjugate * turn if np.array_equal(place, -conjugate * turn) else place
@@ -333,46 +337,46 @@ def _signed_axes(columns):
     return np.diag(signs) @ np.eye(3)[[AXES.index(letter) for letter in letters]]
 
 
-def _check_once(names, asked, where):
+def _check_once(names, import_map, where):
     """Refuse a column of one table that is mapped twice."""
-    taken = {asked.time.column: "time"}
+    taken = {import_map.time.column: "time"}
     for name in names:
-        column = asked.columns[name].column
+        column = import_map.columns[name].column
         other = taken.setdefault(column, name)
         if other != name:
             raise InputError(where, f"columns.{name}", f"expected a column of its own; '{column}' is {other}")
 
 
-def _columns_of(source, names, asked, kind, where):
+def _columns_of(source, names, import_map, kind, where):
     """Times (n_times,) and readings (n_times, n_names) of a table, in SI."""
-    with _by_key(asked, where, "time"):
-        table = read_table(source, asked.layout)
-        time = _clock(table, asked, where)
+    with _by_key(import_map, where, "time"):
+        table = read_table(source, import_map.layout)
+        time = _clock(table, import_map, where)
     columns = []
     for name in names:
-        column = asked.columns[name]
-        unit, key = column.unit or getattr(asked, f"{kind}_unit"), f"columns.{name}"
+        column = import_map.columns[name]
+        unit, key = column.unit or getattr(import_map, f"{kind}_unit"), f"columns.{name}"
         if unit is None:
             raise InputError(where, f"{kind}_unit", f"missing key; {name} needs it")
         size = unit_size(kind, unit, where, f"{key}.unit" if column.unit else f"{kind}_unit")
-        with _by_key(asked, where, key):
+        with _by_key(import_map, where, key):
             read = table.column(column.column, -size if column.reversed else size, kind)
-        if np.isnan(read).all() and len(asked.tests) == 1:
+        if np.isnan(read).all() and len(import_map.tests) == 1:
             wrong = f"expected readings in '{column.column}' of {table.source}; all are missing"
             raise InputError(where, key, wrong)
         columns.append(read + 0.0)  # no minus zero
     return time, np.column_stack(columns)
 
 
-def _clock(table, asked, where):
+def _clock(table, import_map, where):
     """Times that increase [s]."""
-    name = asked.time.column
-    time = table.times(name, unit_size("time", asked.time.unit or "s", where, "time.unit"))
+    name = import_map.time.column
+    time = table.times(name, unit_size("time", import_map.time.unit or "s", where, "time.unit"))
     if np.isnan(time).any():
         raise table.fault(table.lines[int(np.argmax(np.isnan(time)))], name, "expected a time")
     check_increase(time, table.lines, table.source, name)
     missing = missing_rows(time) if len(time) > 1 else np.zeros(0)
-    if missing.any() and not asked.fill_gaps:
+    if missing.any() and not import_map.fill_gaps:
         row, steps = int(np.argmax(missing > 0)), np.diff(time)
         raise InputError(
             where, "fill_gaps",
@@ -383,23 +387,25 @@ def _clock(table, asked, where):
     return time
 
 
-def _rest(time, column, asked, where, name):
+def _rest(time, column, import_map, where, name):
     """Mean reading of the quiet start; zero of a column without readings, which the check of a test finds so."""
-    if asked.rest == 0.0 or np.isnan(column).all() or stuck(column):
+    if import_map.rest == 0.0 or np.isnan(column).all() or stuck(column):
         return 0.0
-    resting = column[(time <= time[0] + asked.rest) & np.isfinite(column)]
+    resting = column[(time <= time[0] + import_map.rest) & np.isfinite(column)]
     if not len(resting):
-        raise InputError(where, "rest", f"{name}: expected a reading in the first {asked.rest:g} s of rest")
+        raise InputError(
+            where, "rest", f"{name}: expected a reading in the first {import_map.rest:g} s of rest"
+        )
     return resting.mean()
 
 
-def _posed_table(test, asked, structure, where):
+def _posed_table(test, import_map, structure, where):
     """Text of a CSV table with ``time_s`` and the columns of the free body; see `read_poses`."""
     body = structure.body_names[free_body(structure)[0]]
     known = [f"{body}.{part}" for part in (*AXES, ANGLE, *_TURNS)]
-    for key in asked.columns:
+    for key in import_map.columns:
         if key not in known:
             raise InputError(where, f"columns.{key}", f"expected one of {', '.join(known)}")
-    _check_once(asked.columns, asked, where)
-    time, columns = _pose_columns(test.file, body, list(asked.columns), asked, where)
+    _check_once(import_map.columns, import_map, where)
+    time, columns = _pose_columns(test.file, body, list(import_map.columns), import_map, where)
     return pd.DataFrame({"time_s": time, **columns}).to_csv(index=False)

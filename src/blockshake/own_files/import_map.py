@@ -78,7 +78,7 @@ def load_map(path):
     InputError
         Not YAML, an unknown or missing key, a path that leads out of the folder.
     """
-    asked = validated(ImportMap, load_yaml(path), path)
+    import_map = validated(ImportMap, load_yaml(path), path)
     folder = Path(path).parent
 
     def below(name, key, kind=None):
@@ -88,13 +88,15 @@ def load_map(path):
         return str(file_below(folder, name, path, key))
 
     tests = []
-    for test in asked.tests:
-        key, beside = f"tests.{test.name}", test.accelerometers
+    for test in import_map.tests:
+        key, accelerometers = f"tests.{test.name}", test.accelerometers
         changes = {
             "file": below(test.file, f"{key}.file"),
             "motion": None if test.motion is None else below(test.motion, f"{key}.motion", "motions"),
-            "accelerometers": None if beside is None else below(beside, f"{key}.accelerometers"),
+            "accelerometers": None
+            if accelerometers is None
+            else below(accelerometers, f"{key}.accelerometers"),
         }
         tests.append(test.model_copy(update=changes))
-    structure = below(asked.structure, "structure", "structures")
-    return asked.model_copy(update={"tests": tuple(tests), "structure": structure})
+    structure = below(import_map.structure, "structure", "structures")
+    return import_map.model_copy(update={"tests": tuple(tests), "structure": structure})

@@ -84,33 +84,36 @@ def run_study(
         write_text(path, moved)
     report = folder / "reports" / "-".join(filter(None, (config.name, case)))
     target, results = f"reports/{report.name}.html" if case else "all", folder / "results"
-    heard = _Progress(reached(config, results), cores, case, folder, say)
+    progress = _Progress(reached(config, results), cores, case, folder, say)
     say(
-        f"{config.name}: {heard.total} runs of {', '.join(config.models)}, on {count_words(cores, 'core')}, in {folder}"
+        f"{config.name}: {progress.total} runs of {', '.join(config.models)}, on {count_words(cores, 'core')}, in "
+        f"{folder}"
     )
-    if kept := heard.total - heard.runs_left():
+    if kept := progress.total - progress.runs_left():
         say(f"{kept} of them are there from before, and run again only where their input changed")
     if not any((folder / "results" / "kernels").glob("*")):
         say("models that are new to this machine are compiled first: half a minute to one minute each")
     grown = config.ensemble.until is None
     try:
         while not grown:
-            run_workflow(workflow_command(cores, folder, path, f"results/{config.name}/responses.csv"), heard)
+            run_workflow(
+                workflow_command(cores, folder, path, f"results/{config.name}/responses.csv"), progress
+            )
             words, grown = grow(config, results)
             say(f"{config.name}: {words}")
-            heard = _Progress(reached(config, results), cores, case, folder, say)
-        run_workflow(workflow_command(cores, folder, path, target), heard)
+            progress = _Progress(reached(config, results), cores, case, folder, say)
+        run_workflow(workflow_command(cores, folder, path, target), progress)
     except WorkflowError as stopped:
         if stopped.exit_code == INTERRUPTED:
             say(
                 f"{config.name}: interrupted; finished samples are kept, and the same command goes on from them"
             )
-        elif not heard.ending:
-            sys.stderr.write("\n".join([*heard.last, ""]))
+        elif not progress.ending:
+            sys.stderr.write("\n".join([*progress.last, ""]))
         raise stopped from None
     shown = [report.with_suffix(".html"), report.with_suffix(".pdf"), folder / "results" / config.name]
     shown = [Path(os.path.relpath(one)) for one in shown]
-    done = "nothing was due" if heard.idle else f"done in {_minutes(time.monotonic() - begin)}"
+    done = "nothing was due" if progress.idle else f"done in {_minutes(time.monotonic() - begin)}"
     say(f"{config.name}: {done}; {shown[0]}, {shown[1]}, {shown[2]}/")
     return shown
 
@@ -139,7 +142,7 @@ def _seen_from(folder, study):
 
 
 class _Progress:
-    """Hears a workflow, and says how far every case is and how long the rest takes.
+    """Follows a workflow, and reports how far every case is and how long the rest takes.
 
     The time left is that of the samples that are not done, by the mean cost of the samples of the same case and model,
     else of the model per second simulated. Where a model has no sample yet, the rest takes longer than is said. Samples

@@ -28,7 +28,7 @@ class WorkflowError(RuntimeError):
 
 
 def cores_of(command, cores):
-    """Number of cores that a command takes: all by default; an `InputError` where the number asked for is none."""
+    """Number of cores that a command takes: all by default; an `InputError` where the number requested is none."""
     if cores is not None and (not isinstance(cores, int) or cores < 1):
         raise InputError(command, "cores", f"expected a whole number from 1, not {cores!r}")
     return os.cpu_count() if cores is None else cores
@@ -58,9 +58,9 @@ def run_workflow(command, hear=None):
     WorkflowError
     """
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
-    heard = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT} if hear else {}
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT} if hear else {}
     environment = {**os.environ, **this_command(), "PATH": path}
-    with subprocess.Popen(command, env=environment, text=True, errors="replace", **heard) as workflow:
+    with subprocess.Popen(command, env=environment, text=True, errors="replace", **pipes) as workflow:
         try:
             for line in workflow.stdout or ():
                 hear(line.rstrip("\n"))

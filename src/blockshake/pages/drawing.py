@@ -14,7 +14,7 @@ from blockshake.errors import InputError
 from blockshake.files import replacing
 from blockshake.pages.blocks import PAGE_WIDTH
 
-# Okabe and Ito's palette with Tol's red in place of vermilion, told apart by colour-blind readers
+# Okabe and Ito's palette with Tol's red in place of vermilion, distinguished by colour-blind readers
 BLACK, ORANGE, BLUE, GREEN, RED = "#000000", "#e69f00", "#0072b2", "#009e73", "#cc3311"
 SKY, PURPLE = "#56b4e9", "#cc79a7"
 LIGHT_GREY, GREY, DARK_GREY = "#e2e2e2", "#b8b8b8", "#555555"
@@ -130,7 +130,7 @@ class PowersOfTen(LogFormatterSciNotation):
 def _shorter(path):
     """Path data to a hundredth of a point, which no printer shows, at a third of the bytes.
 
-    A line's command stands once for all the points that follow, each told from the one before.
+    A line's command stands once for all the points that follow, each distinguished from the one before.
     """
     rounded = re.sub(r"-?\d+\.\d{3,}", lambda found: f"{float(found[0]):.2f}", path)
     return re.sub(r"(M \S+ \S+) (L [-\d. L]+)", _one_line, " ".join(rounded.split()))

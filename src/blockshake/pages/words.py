@@ -1,4 +1,4 @@
-"""Sentences of a page: macros of a template that stands beside the module that computes what they say."""
+"""Sentences of a page: macros of a template that stands next to the module that computes what they say."""
 
 import functools
 import re

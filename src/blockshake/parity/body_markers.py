@@ -7,7 +7,7 @@ import numpy as np
 from scipy.ndimage import binary_opening
 
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.measurement.campaigns.starting_places import standing
+from blockshake.measurement.campaigns.initial_poses import initial_poses
 from blockshake.measurement.motion.body_frame import ON_LINE, outlying, rigid_jacobian, see_from_body
 from blockshake.measurement.sensors.markers import whole_markers
 
@@ -37,7 +37,7 @@ class BodyMarkers:
     @classmethod
     def of(cls, structure, body, tests, names, axes=(1.0, 1.0, 1.0)):
         """Markers of a body, where ``names`` has them, in ``tests`` (readings by name); ``axes`` as of `Sensors`."""
-        starts = [standing(structure, test) for test in tests.values()]
+        starts = [initial_poses(structure, test) for test in tests.values()]
         markers = [
             marker for marker in structure.file.markers if marker.body == body and marker.name in names
         ]

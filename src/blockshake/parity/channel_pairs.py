@@ -1,4 +1,4 @@
-"""Accelerometers beside the markers of the same body, in the band in which both are informative."""
+"""Accelerometers against the markers of the same body, in the band in which both are informative."""
 
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -57,7 +57,7 @@ def channel_pairs(structure, test, poses, accelerometer_noise):
     test : xarray.Dataset
         As in a campaign.
     poses : dict of str to MeasuredPose
-        Of bodies in this test.
+        Bodies in this test.
     accelerometer_noise : float
         Standard deviation of a reading [m/s2].
 
@@ -155,7 +155,7 @@ def _over_gaps(kernel, values, reach):
 
 
 def between_readings(time, values):
-    """Callable of times: the cubic spline through readings (n_times,), NaN beside a gap and outside of the record."""
+    """Callable of times: the cubic spline through readings (n_times,), NaN next to a gap and outside of the record."""
     known = np.isfinite(values)
     if known.sum() < 4:
         return lambda times: np.full(len(times), np.nan)

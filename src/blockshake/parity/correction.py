@@ -16,7 +16,7 @@ def load_corrected_test(campaign, name, structure, findings):
 def judged_readings(test, name, structure, findings):
     """A test without the faults that were found, its times from `simulation_start` on.
 
-    Times count as those of the tests that are simulated beside it; what was read before is left out.
+    Times count as those of the tests that are simulated with it; what was read before is left out.
     """
     test = corrected(test, name, structure, findings)
     return since(test, simulation_start(test["time"].to_numpy()))
@@ -30,7 +30,7 @@ def corrected(test, name, structure, findings):
     test : xarray.Dataset
         As read.
     name : str
-        Of the test: findings of other tests do not touch it.
+        For the test: findings of other tests do not touch it.
     structure : Structure
     findings : sequence of Finding
 

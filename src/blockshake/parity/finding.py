@@ -10,7 +10,7 @@ MOST_MISFIT = 0.5  # of the misfit that taking an exchange back may leave
 
 
 class Level(NamedTuple):
-    """Chance of any finding on a campaign of sound sensors, shared evenly by a number of hypotheses."""
+    """Chance of any finding on a campaign of faultless sensors, shared evenly by a number of hypotheses."""
 
     chance: float
     hypotheses: int
@@ -35,7 +35,7 @@ class Finding:
 
     @property
     def standard_error(self):
-        """Of each component, float64 array, shape (n,)."""
+        """For each component, float64 array, shape (n,)."""
         return np.sqrt(np.diagonal(self.covariance))
 
     def as_json(self):
@@ -94,7 +94,7 @@ def chance_of_misfit(before, after, variance):
     before, after : float
         Sums of squared misfits as read, and with the exchange taken back.
     variance : float
-        Of an independent value, times the number of values that depend on each other.
+        For an independent value, times the number of values that depend on each other.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Faults as unknowns of linear equations, each tied to zero by what a sound sensor may have, named one by one."""
+"""Faults as unknowns of linear equations, each tied to zero by what a faultless sensor may have, named one by one."""
 
 from itertools import product
 from typing import NamedTuple
@@ -87,7 +87,7 @@ def data_alone(mean, covariance, spread):
     return alone @ (information @ mean), alone
 
 
-def name_faults(equations_of, unknowns, level, names, most, sound=0, possible=None):
+def name_faults(equations_of, unknowns, level, names, most, faultless=0, possible=None):
     """Name the clearest fault, make the equations anew with this one free, and so on, until no fault is clear.
 
     Parameters
@@ -97,10 +97,10 @@ def name_faults(equations_of, unknowns, level, names, most, sound=0, possible=No
     unknowns : Unknowns
     level : Level
     names : sequence of str
-        Of the sensors.
+        The sensors.
     most : int
         Faults.
-    sound : int
+    faultless : int
         Sensors that have to be left without a fault.
     possible : callable of (fault, estimate), optional
         Whether a fault may have that size; by default any.
@@ -112,7 +112,7 @@ def name_faults(equations_of, unknowns, level, names, most, sound=0, possible=No
     equations : Equations
         The last ones.
     spread : float64 array
-        Of their unknowns.
+        Their unknowns.
 
     Notes
     -----
@@ -126,7 +126,7 @@ def name_faults(equations_of, unknowns, level, names, most, sound=0, possible=No
         if len(named) == most or not np.isfinite(equations.variance):
             return named, equations, spread
         suspects = {fault.sensor for fault in named}
-        full = len(suspects) >= len(names) - sound
+        full = len(suspects) >= len(names) - faultless
         mean, covariance = equations.posterior(spread)
         gained, clear = {}, {}
         for fault, (numbers, trials) in equations.faults.items():

@@ -11,7 +11,7 @@ from blockshake.parity.kinds import drift, gain, wrong_place
 from blockshake.parity.kinds.kind import Column
 from blockshake.parity.linear_faults import Equations, Unknowns, coloured_variance, name_faults
 
-_SOUND_MARKERS = 2  # of a body, that must be left without a fault, or nothing says which is at fault
+_FAULTLESS_MARKERS = 2  # of a body, that must be left without a fault, or nothing states which is at fault
 _MOST_FAULTS = 8  # faults on one body
 _LINEARISATIONS = 4
 _BRACKET = 0.1  # m, by which a marker may stand off its body
@@ -88,7 +88,7 @@ def check_body(body, marker_noise, level):
         return fault.column is not wrong_place.OF_MARKER or bool(within.all())
 
     named, equations, spread = name_faults(
-        equations_of, unknowns, level, body.markers, _MOST_FAULTS, _SOUND_MARKERS, on_the_body
+        equations_of, unknowns, level, body.markers, _MOST_FAULTS, _FAULTLESS_MARKERS, on_the_body
     )
     covariance, findings = equations.posterior(spread)[1] if named else None, []
     for fault, p in named.items():
@@ -142,7 +142,7 @@ def _one_test(body, unknowns, sizes, test, marker_noise):
     pose = body.frame(displacement, places[0])
     used = np.flatnonzero(
         pose.projector.any(axis=(1, 2))
-        & ~outlying(pose.residual).any(axis=1)  # beside one that is a gap
+        & ~outlying(pose.residual).any(axis=1)  # next to one that is a gap
         & body.upright(pose.rotation)
     )
     points = body.points + places[0]

@@ -8,7 +8,7 @@ import xarray as xr
 
 from blockshake.files import load_made_json
 from blockshake.measurement.campaigns.faulty_readings import faulty_lines
-from blockshake.measurement.campaigns.starting_places import standing, starting_lines
+from blockshake.measurement.campaigns.initial_poses import initial_pose_lines, initial_poses
 from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.motion.fall import Fall
 from blockshake.measurement.sensors.instruments import Sensors
@@ -25,7 +25,7 @@ from blockshake.parity.kinds.gain import channel_gains, gain_findings
 from blockshake.parity.kinds.saturation import saturation
 from blockshake.parity.transducer_readings import held_readings
 
-LEVEL = 0.01  # chance of any finding on a campaign of sound sensors
+LEVEL = 0.01  # chance of any finding on a campaign of faultless sensors
 _TABLES = {
     "markers": ("marker", ["noise", "misfit"]),
     "clock": ("test", ["lag", "lag_error"]),
@@ -145,10 +145,11 @@ def check_parity(tests, structure, sensors, level=LEVEL):
     sensors = sensors.not_noiseless()
     noise, axes = sensors.marker_noise, sensors.marker_axes
     gaps = {
-        name: faulty_lines(test) + short_lines(test) + starting_lines(test) for name, test in tests.items()
+        name: faulty_lines(test) + short_lines(test) + initial_pose_lines(test)
+        for name, test in tests.items()
     }
     findings = saturation(tests, level)
-    tests = {name: without_outliers(test, standing(structure, test)) for name, test in tests.items()}
+    tests = {name: without_outliers(test, initial_poses(structure, test)) for name, test in tests.items()}
     share = Level(level, _looked_at(bodies_with_markers(structure, tests), tests))
 
     def without(faults):
@@ -177,7 +178,7 @@ def check_parity(tests, structure, sensors, level=LEVEL):
     lags = {name: clock[name].estimate[0] if name in clock else 0.0 for name in tests}
     gains, exchanges = channel_gains(pairs, lags), channel_exchanges(pairs, lags, share)
     exchanged = {name for finding in exchanges for name in finding.where}
-    sound = {
+    faultless = {
         name: [pair for pair in of_test if pair.name not in exchanged] for name, of_test in pairs.items()
     }
     findings += clock_findings(clock, common, share) + exchanges
@@ -192,7 +193,7 @@ def check_parity(tests, structure, sensors, level=LEVEL):
     findings += gain_findings(
         {name: gain for name, gain in gains.items() if name not in exchanged}, pairs, share, unsure
     )
-    findings += drift_findings(sound, lags, sensors.accelerometer_noise, share)
+    findings += drift_findings(faultless, lags, sensors.accelerometer_noise, share)
     transducers = {
         name: transducer_faults.check_transducer(name, held, share)
         for name, held in held_readings(structure, tests, poses, lags).items()

@@ -23,7 +23,7 @@ class Size:
         return Size(self.estimate[[index]], self.covariance[[index]][:, [index]], self.freedom)
 
     def finding(self, kind, where, tests, tolerance, level, length=1.0):
-        """List of the `Finding`, empty where a sound sensor may have as much.
+        """List of the `Finding`, empty where a faultless sensor may have as much.
 
         Parameters
         ----------
@@ -31,10 +31,10 @@ class Size:
         where, tests
             As in `Finding`.
         tolerance : float
-            What a sound sensor may have.
+            What a faultless sensor may have.
         level : Level
         length : float
-            Of the record, of an estimate that is a change over it and a rate in the finding [s].
+            For the record, of an estimate that is a change over it and a rate in the finding [s].
         """
         p = level.hypotheses * chance_within(self.estimate, self.covariance, tolerance, self.freedom)
         rate, square = self.estimate / length, self.covariance / length**2

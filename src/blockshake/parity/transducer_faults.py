@@ -50,7 +50,7 @@ def check_transducer(name, held, level):
     What remains of the means of a test is ``c + g e + J d + s H + l r`` with constant c, gain g of the expectation e,
     wrong places d of both ends, a slip s from some time on, and a lag l of the rate r. Constants and lags are taken
     out; the other unknowns are tied to zero by half their tolerance, but for those that have been named. The time of a
-    slip is the likeliest one, and its chance counts once for each time that was tried.
+    slip is the most probable one, and its chance counts once for each time that was tried.
 
     A gain or a place is looked for only where a visible one would leave as much as the noise of a mean: noise in a
     column makes its coefficient too small, of a gain by less than the square of this, a tenth of its tolerance.
@@ -71,15 +71,15 @@ def check_transducer(name, held, level):
 
     def equations_of(named, spread):
         fixed = {fault.test: rows[fault.test] for fault in named if fault.column is drift.OF_END}
-        equations, likeliest = _equations(list(held.values()), unknowns, spread, fixed)
-        rows.update(likeliest)
+        equations, most_probable = _equations(list(held.values()), unknowns, spread, fixed)
+        rows.update(most_probable)
         return equations
 
     named, equations, spread = name_faults(equations_of, unknowns, level, (name,), _MOST_FAULTS)
     mean, covariance = equations.posterior(spread)
     for fault, p in named.items():
         numbers, where = unknowns.of(fault), tests
-        # along what is not told 0, as good as unknown
+        # along what is unknown 0, as good as unknown
         estimate, square = np.zeros(len(numbers)), np.diag(spread[numbers] ** 2)
         informed, _ = equations.faults[fault]
         at = informed - numbers[0]
@@ -104,7 +104,8 @@ def _without_lag(values, held):
 
 
 def _equations(held, unknowns, spread, fixed):
-    """`Equations` from `HeldReading` by test, and the row of each test's likeliest slip; ``fixed``: of named ones."""
+    """`Equations` from `HeldReading` by test, and the row of each test's most probable slip; ``fixed``: of named
+    ones."""
     misfits = [_without_lag(means.misfit, means) for means in held]
     steps = [_without_lag(_steps(len(means.misfit)), means) for means in held]
     of_slips, rows = unknowns.numbers[drift.OF_END][:, 0, 0], dict(fixed)

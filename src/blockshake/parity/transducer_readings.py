@@ -1,4 +1,4 @@
-"""A displacement transducer beside the markers of its two bodies."""
+"""A displacement transducer against the markers of its two bodies."""
 
 from dataclasses import dataclass, replace
 
@@ -23,7 +23,7 @@ _SHIFTS = 4  # Gauss-Newton steps to the lag of the clocks
 
 @dataclass(frozen=True)
 class HeldReading:
-    """One transducer in one test beside what the markers say of it, as means over a tenth of a second."""
+    """One transducer in one test against what the markers say of it, as means over a tenth of a second."""
 
     time: np.ndarray  # float64 (n_means,); of the markers [s]
     misfit: np.ndarray  # float64 (n_means,); reading less expectation [m]
@@ -48,9 +48,9 @@ def held_readings(structure, tests, poses, lags):
     tests : dict of str to xarray.Dataset
         By name, as in a campaign.
     poses : dict of str to dict of str to MeasuredPose
-        Of bodies, by test.
+        For bodies, by test.
     lags : dict of str to float
-        Of the optical clock behind the recorder's, as accelerometers tell it; 0 where they do not [s].
+        For the optical clock behind the recorder's, as accelerometers tell it; 0 where they do not [s].
 
     Notes
     -----
@@ -119,7 +119,7 @@ def _held(time, expected, places, reading, lag):
         # the two constants of a transducer and of the markers have no meaning
         means[:, 1:] -= means[:, 1:].mean(axis=0)
         held = HeldReading(means[:, 0], means[:, 1], means[:, 2], means[:, 3:-1], means[:, -1], noise)
-        # what remains of the lag, beside a gain of either sign
+        # what remains of the lag, next to a gain of either sign
         lag -= np.linalg.lstsq(np.column_stack([held.late, held.expected]), held.misfit, rcond=None)[0][0]
     return held
 

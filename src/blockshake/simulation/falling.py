@@ -208,7 +208,7 @@ def _carried_along(supports, position, turning, up):
 def _uncarried(structure, supports, ahead, up, watched):
     """Body whose weight drives the motion that no forces on the supports can stop; None where some forces do.
 
-    A linear program: the least sum of forces and moments, beside those on the supports, with which all weights at
+    A linear program: the least sum of forces and moments, with those on the supports, with which all weights at
     their places ``ahead`` [m] are carried. Its multipliers are the motion.
     """
     bodies = np.flatnonzero(watched)

@@ -1,4 +1,4 @@
-"""Limits of a run, held against what was asked before anything is computed or allocated."""
+"""Limits of a run, held against the settings before anything is computed or allocated."""
 
 import numpy as np
 

@@ -231,7 +231,7 @@ def split_parameters(parameters, name):
     """
     from blockshake.validation import validated  # here, so that the help of the command line stays quick
 
-    asked = model_of(name)
+    chosen = model_of(name)
     physical, numerical = part_parameters(parameters)
     settings = {}
     for model in MODELS.values():
@@ -239,14 +239,14 @@ def split_parameters(parameters, name):
         values = {
             key.removeprefix(prefix): value for key, value in numerical.items() if key.startswith(prefix)
         }
-        if not values and model is not asked:
+        if not values and model is not chosen:
             continue
         fields = model.schema.model_fields
         if unknown := [key for key in values if key not in fields]:
             wrong = f"expected one of {prefix}{{{', '.join(fields)}}}"
             raise InputError(Argument("parameters"), f"{prefix}{unknown[0]}", wrong)
         settings[model.name] = validated(model.schema, values, Argument("parameters"), model.prefix)
-    return physical, settings[asked.name]
+    return physical, settings[chosen.name]
 
 
 def _named(path):

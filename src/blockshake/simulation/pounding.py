@@ -11,17 +11,17 @@ _SLOWEST = 0.05  # m/s: what is slower leans and does not strike
 
 
 def pounding(run, structure):
-    """Blows of a run between blocks that stood apart beside each other at the start: how many, the velocity of the
+    """Blows of a run between blocks that stood apart next to each other at the start: how many, the velocity of the
     fastest [m/s], and its two blocks; 0 and an empty text without any.
 
     Notes
     -----
-    The gap of two convex bodies is told by the two faces that look at each other at the start, each of which turns with
-    its body: the larger distance of the other body's nearest corner. A blow is where the gap closes to 0.1 mm, or would
-    by its velocity, between two rows of the run, and opens before it closes again; its velocity is the larger one of
-    the two steps between rows before it, the last of which may hold a part of the blow. Slower ones than 0.05 m/s are
-    left out. Neither a force nor an impulse is told: a run holds forces at its rows alone, and a blow is over before
-    the next one.
+    The gap of two convex bodies is given by the two faces that look at each other at the start, each of which turns
+    with its body: the larger distance of the other body's nearest corner. A blow is where the gap closes to 0.1 mm, or
+    would by its velocity, between two rows of the run, and opens before it closes again; its velocity is the larger one
+    of the two steps between rows before it, the last of which may hold a part of the blow. Slower ones than 0.05 m/s
+    are left out. Neither a force nor an impulse is reported: a run holds forces at its rows alone, and a blow is over
+    before the next one.
     """
     names = structure.body_names
     pairs = np.array([[names.index(name) for name in run[side].values] for side in ("lower", "upper")], int).T
@@ -42,7 +42,7 @@ def pounding(run, structure):
 
 
 def gap_of_pair(structure, position, turns, a, b):
-    """Gap over time of two bodies that stand beside each other at the start, (n_times,) [m]; None of others.
+    """Gap over time of two bodies that stand next to each other at the start, (n_times,) [m]; None of others.
 
     ``position`` and ``turns``: (n_times, n_bodies, 3) [m] and (n_times, n_bodies, 3, 3), body to world.
     """

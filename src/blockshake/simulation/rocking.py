@@ -13,7 +13,7 @@ from blockshake.measurement.motion.joints import contact_normals, find_joints, j
 # s, from an impact: rates beyond its ringing, and before the swing bends them
 _NEAREST, _FARTHEST = 0.005, 0.03
 _FEWEST_ROWS = 3  # rows on either side
-_SAME_HEIGHT = 1e-3  # m, of joints beside each other
+_SAME_HEIGHT = 1e-3  # m, of joints next to each other
 _AS_FAR = 0.8  # of the lever to the other side
 _LEAST_SPIN = 0.05  # rad/s: slower closings are elastic
 
@@ -155,7 +155,7 @@ def _reach(structure, position, turns):
     return np.maximum(lower_low, upper_low), np.minimum(lower_high, upper_high)
 
 
-def spin_kept(structure, time, position, turns, angular_velocity):
+def angular_momentum_ratio(structure, time, position, turns, angular_velocity):
     """Share of the spin across each joint that its impacts keep, median over them, float64 array (n_joints,) [1].
 
     ``time`` (n_times,) [s]; ``angular_velocity`` (n_times, n_bodies, 3), world frame [rad/s]; others as of

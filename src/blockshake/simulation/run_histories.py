@@ -7,7 +7,7 @@ from blockshake.geometry.rotations import rotation_matrices
 from blockshake.measurement.motion.joints import contact_normals, find_joints, joint_coordinates
 from blockshake.simulation.energy_residual import unexplained_energy
 from blockshake.simulation.pounding import pounding
-from blockshake.simulation.rocking import overturning_margins, spin_kept
+from blockshake.simulation.rocking import angular_momentum_ratio, overturning_margins
 from blockshake.simulation.run_dataset import histories
 
 # dimensions, unit and name of the histories of the joints, and of all
@@ -144,8 +144,8 @@ def joint_figures(run, structure):
         ``joint_compression(joint)``: normal force that is exceeded for 1 % of the time [N]; ``joint_uplift`` and
         ``joint_slip(joint)``: largest opening and slip at the middle of the face, see `run_histories` [m]. NaN where
         a joint is not known there. ``joint_margin(joint)``, from `overturning_margins`, and ``joint_spin_kept(joint)``,
-        from `spin_kept` [1]. Coordinate ``joint``, ``lower-upper``, from the foundation up. And of `pounding`:
-        ``blows`` [1], ``blow_velocity`` [m/s] and ``blow_pair``.
+        from `angular_momentum_ratio` [1]. Coordinate ``joint``, ``lower-upper``, from the foundation up. And of
+        `pounding`: ``blows`` [1], ``blow_velocity`` [m/s] and ``blow_pair``.
 
     Notes
     -----
@@ -175,7 +175,7 @@ def joint_figures(run, structure):
     time, spin = seen["time"].to_numpy(), seen["angular_velocity"].to_numpy()
     rocking = {
         "joint_margin": overturning_margins(*moved),
-        "joint_spin_kept": spin_kept(structure, time, *moved[1:], spin),
+        "joint_spin_kept": angular_momentum_ratio(structure, time, *moved[1:], spin),
     }
     blows, velocity, pair = pounding(run, structure)
     return xr.Dataset(

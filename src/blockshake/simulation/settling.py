@@ -29,7 +29,7 @@ def settling(structure, position, orientation):
 
     ``position`` (n_bodies, 3) and ``orientation`` (n_bodies, 4): at the end of the rest [m], unit quaternions. The move
     is that of the farthest vertex from where the structure file puts it, seen from the first driven body. Bodies that
-    touch nothing, or are given a velocity, are left out. A block that is let go tilted moves too, and is told.
+    touch nothing, or are given a velocity, are left out. A block that is let go tilted moves too, and is reported.
     """
     watched, _ = collapse_limits(structure)
     watched &= ~structure.velocity.any(axis=1) & ~structure.angular_velocity.any(axis=1)

@@ -83,7 +83,7 @@ def simulate(
     output_rate : float, optional
         [Hz]; the optical system's by default. The run ends at its last whole row within the duration.
     accelerometers : bool
-        Compute the accelerometer channels, which takes a fine record, and the displacement transducers beside them.
+        Compute the accelerometer channels, which takes a fine record, and the displacement transducers with them.
     checkpoint : path, optional
         Where a long run is saved every minute, and from where it goes on, bit-identical, if it was cut short.
     scale : float

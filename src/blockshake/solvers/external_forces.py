@@ -60,7 +60,7 @@ def assemble_external_forces(structure):
 def external_wrenches_into(bodies, forces, state, time, ahead, wrench):
     """External forces on all bodies, with their moments about the mass centres.
 
-    ``time``: when the forces are asked for, ``ahead`` of the state, over which every point keeps its velocity [s].
+    ``time``: when the forces are requested, ``ahead`` of the state, over which every point keeps its velocity [s].
     ``wrench`` (n_bodies, 6) is overwritten with force and moment, world frame [N, N m].
 
     Notes

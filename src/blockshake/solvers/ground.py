@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.dynamics.motion import PITCH, MotionTable, find_segment, ground_state_into
-from blockshake.jit import borrowing_kernel, inner_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation
 
 
 class Ground(NamedTuple):
-    """Ground motion at the time last asked for.
+    """Ground motion at the time last requested.
 
     ``table`` (MotionTable). ``origin`` (4,): what counts as no displacement [m, rad]. ``displacement``,
     ``velocity`` (4,): x, y, z and pitch since ``origin`` [m, rad], and their rates. ``segment`` int64 (1,): of
@@ -33,7 +33,7 @@ def ground_at_start(table):
     return ground
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def move_ground_into(ground, t):
     """Displacement and its rate at one time."""
     segment = find_segment(ground.table.breaks, t, ground.segment[0])
@@ -43,7 +43,7 @@ def move_ground_into(ground, t):
     ground.segment[0] = segment
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def move_ground_by_secant_into(ground, t, later, dt):
     """Displacement at the time ``t``, and the mean velocity from there to ``later``, which is ``dt`` after it."""
     move_ground_into(ground, t)

@@ -48,7 +48,7 @@ def run_in_pieces(start, integrate, rows_of, times, time_step, checkpoint, kept=
     rows_of : callable
         ``rows_of(*parts)`` gives the record as `Rows`.
     times : float64 array, shape (n_times,)
-        Of the record [s].
+        The record [s].
     time_step : float
         [s]
     checkpoint : Checkpoint
@@ -64,7 +64,7 @@ def run_in_pieces(start, integrate, rows_of, times, time_step, checkpoint, kept=
     Raises
     ------
     KeyboardInterrupt
-        An interrupt came. The run is saved where a checkpoint is asked for, and the message says how to go on.
+        An interrupt came. The run is saved where a checkpoint is requested, and the message states how to go on.
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""Record of a run at the times asked for, which every solver fills in, and how the run ended."""
+"""Record of a run at the times requested, which every solver fills in, and how the run ended."""
 
 import sys
 from typing import NamedTuple
@@ -7,7 +7,7 @@ import numpy as np
 
 from blockshake.dynamics.system import ENERGY_TERMS, Rows, Status
 from blockshake.geometry.vectors import copy_into
-from blockshake.jit import borrowing_kernel, inner_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation
 
 COMPLETED, COLLAPSED, DIVERGED, PAUSED = 0, 1, 2, 3
 # First entries of a solver's ``clock``: next step (so the number of steps made), and next record
@@ -21,7 +21,7 @@ _LEAST_STEPS = 3  # of a record that is not of all times: a step in which it is 
 class RunRecord(NamedTuple):
     """Rows of `Rows` that are at hand, ``joint_force`` for all joints; NaN at times that the run did not reach.
 
-    ``first`` int64 (1,): number of the first of these rows among the times asked for.
+    ``first`` int64 (1,): number of the first of these rows among the times requested.
     """
 
     position: np.ndarray
@@ -106,7 +106,7 @@ def with_room(record, n_joints):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def find_diverged(state):
     """First body whose state is not finite or that is faster than anything real, or -1."""
     for body in range(state.position.shape[0]):

@@ -65,9 +65,9 @@ def quantile_ranks(size, probability):
     Parameters
     ----------
     size : int
-        Of the sample.
+        The sample.
     probability : float
-        Of a smaller value, in (0, 1).
+        For a smaller value, in (0, 1).
 
     Returns
     -------

@@ -5,7 +5,7 @@ All are means of the differences between two curves, so that the pairs are compa
 
 import numpy as np
 
-FEWEST = 3  # samples; of fewer an ensemble has no width that could be told from chance
+FEWEST = 3  # samples; of fewer an ensemble has no width that could be distinguished from chance
 
 
 def mean_differences(curves, others):
@@ -36,7 +36,7 @@ def ensemble_distance(differences, first, second):
     Parameters
     ----------
     differences : float64 array, shape (n, n)
-        Of all members from each other, from `mean_differences`.
+        For all members from each other, from `mean_differences`.
     first, second : int arrays
         Rows of the members of either ensemble; none in both.
 

@@ -17,7 +17,7 @@ from blockshake.study.analyses import ANALYSES
 from blockshake.study.calibration.settings import CalibrationSettings
 from blockshake.study.config_checks import check_named
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED
-from blockshake.study.ensembles.rungs import Rungs
+from blockshake.study.ensembles.intensity_ladder import IntensityLevels
 from blockshake.study.limit_states.settings import LimitState
 from blockshake.study.sampling.distributions import (
     LINKED,
@@ -126,21 +126,21 @@ class Ensemble(Strict):
                 name: {"distribution": "empirical", "values": sorted(column.tolist())}
                 for name, column in values.items()
             }
-            told = {"size": len(values), "distributions": load_distributions(columns, given["table"])}
+            tabled = {"size": len(values), "distributions": load_distributions(columns, given["table"])}
         for key in ("size", "distributions", "correlation"):
-            said = given.get(key)  # a report prints what the table told
+            said = given.get(key)  # a report prints what the table gave
             if key == "distributions" and said is not None:
                 said = load_distributions(said, "ensemble")
-            if said not in (None, told.get(key)):
-                raise InputError("", f"ensemble.{key}", "expected no such key beside `table`, which tells it")
-        return given | told
+            if said not in (None, tabled.get(key)):
+                raise InputError("", f"ensemble.{key}", "expected no such key with `table`, which tells it")
+        return given | tabled
 
     @model_validator(mode="after")
     def _grows(self):
         if self.until is not None and self.batch is None:
-            raise ValueError("expected `batch`, by which samples are added, beside `until`")
+            raise ValueError("expected `batch`, by which samples are added, with `until`")
         if self.batch is not None and (self.table or self.size % self.batch):
-            raise ValueError("expected `batch` beside a `size` that is a multiple of it, and no table")
+            raise ValueError("expected `batch` next to a `size` that is a multiple of it, and no table")
         return self
 
     @field_validator("distributions", mode="before")
@@ -188,7 +188,7 @@ class StudyCase(Strict):
     scale: Positive = Field(1.0, description="multiplies the motion [1]")
     intensity: Intensity | None = Field(
         None,
-        description="how strong the motions are told to be and, with `levels`, scaled to be, before `scale`; by "
+        description="how strong the motions are stated to be and, with `levels`, scaled to be, before `scale`; by "
         "default the peak ground acceleration where the samples draw records: docs/guide/records.md",
     )
     baseline: Baseline = AUTO
@@ -222,13 +222,11 @@ class StudyCase(Strict):
         if self.input == MEASURED and self.measured is None:
             raise ValueError(f"expected input: {COMMANDED}, as there is no measured test")
         if self.intensity is not None and self.measured is not None:
-            raise ValueError(
-                "expected no `measured` beside records or `intensity`: no test had these motions"
-            )
+            raise ValueError("expected no `measured` with records or `intensity`: no test had these motions")
         return self
 
 
-class Ladder(Rungs):
+class Ladder(IntensityLevels):
     """The intensities that samples climb, and the drift that counts as a potential collapse."""
 
     largest_drift: Positive | None = Field(
@@ -249,7 +247,7 @@ class FragilitySettings(Strict):
 
 
 class ExtensionSettings(Strict):
-    """A cause that measured tests speak for, as `blockshake extend-study` writes it: its effect is told by pairs of
+    """An effect that a diagnosis found, as `blockshake extend-study` writes it: its effect is given by pairs of
     cases."""
 
     cases: dict[str, str] = Field(
@@ -296,7 +294,7 @@ class StudyConfig(Strict):
     models: dict[str, ModelSettings] = Field(
         min_length=1,
         description="by name: a solver's, or a solver's with words of yours after it, such as `ls-dem-as-printed`. "
-        "Models of one solver run the same samples, and the report says how each differs from that of the plain name",
+        "Models of one solver run the same samples, and the report states how each differs from that of the plain name",
     )
     structure: dict[str, Any] | None = Field(
         None,
@@ -329,17 +327,17 @@ class StudyConfig(Strict):
 
         linked = {target: known_name(source) for target, source in self.ensemble.linked.items()}
         changes = {"ensemble": self.ensemble.model_copy(update={"linked": linked})}
-        if (asked := self.calibration) is not None:
-            ranges = {known_name(name): span for name, span in asked.ranges.items()}
-            if len(ranges) < len(asked.ranges):
+        if (settings := self.calibration) is not None:
+            ranges = {known_name(name): span for name, span in settings.ranges.items()}
+            if len(ranges) < len(settings.ranges):
                 raise InputError("", "study.calibration.ranges", "expected every pair once")
             named = {
                 "ranges": ranges,
-                "linked": {known_name(name): known_name(source) for name, source in asked.linked.items()},
+                "linked": {known_name(name): known_name(source) for name, source in settings.linked.items()},
             }
-            if asked.parameters is not None:
-                named["parameters"] = tuple(map(known_name, asked.parameters))
-            changes["calibration"] = asked.model_copy(update=named)
+            if settings.parameters is not None:
+                named["parameters"] = tuple(map(known_name, settings.parameters))
+            changes["calibration"] = settings.model_copy(update=named)
         return self.model_copy(update=changes)
 
     def case(self, name):
@@ -384,7 +382,7 @@ def check_config(mapping, where):
     config = validated(StudyConfig, mapping, where)
     structures = check_named(config, where)
     for analysis in ANALYSES:
-        asked = getattr(config, analysis.settings) if analysis.settings else None
-        if asked is not None:
-            analysis.check(asked, config, structures, where)
+        settings = getattr(config, analysis.settings) if analysis.settings else None
+        if settings is not None:
+            analysis.check(settings, config, structures, where)
     return config

@@ -270,7 +270,7 @@ def check_ends(structure, ends, parameters, where, key):
     ends : dict of str to tuple of float
         Both values by variable.
     parameters : callable
-        Of values by variable: parameters of the structure by dotted name.
+        For values by variable: parameters of the structure by dotted name.
     where, key : str
         File, and key under which the variables stand, that an error names.
     """
@@ -316,36 +316,36 @@ def check_measured(case, structure, where, key):
         )
 
 
-def check_fragility(asked, config, structures, where):
+def check_fragility(settings, config, structures, where):
     """Cases and a model of the study, and no more samples than there are."""
-    for name in asked.cases:
+    for name in settings.cases:
         _one_of(name, [case.name for case in config.cases], where, "fragility.cases")
         if (strong := config.case(name).intensity) is not None and len(strong.levels) > 1:
             raise InputError(
                 where, "fragility.cases", f"expected {name} to have one level, which samples climb from"
             )
-    _each_once(asked.cases, where, "fragility.cases")
-    _one_of(asked.model, config.models, where, "fragility.model")
+    _each_once(settings.cases, where, "fragility.cases")
+    _one_of(settings.model, config.models, where, "fragility.model")
     first = config.ensemble.size if config.ensemble.until is None else config.ensemble.batch
-    if asked.size > first:
+    if settings.size > first:
         raise InputError(
             where, "fragility.size", f"expected at most the first samples of the ensemble, {first}"
         )
 
 
-def check_limits(asked, config, structures, where):
+def check_limits(settings, config, structures, where):
     """Cases of the study, bodies and joints of their structures."""
-    for name, state in asked.items():
+    for name, state in settings.items():
         key = f"limits.{name}"
         for case in state.cases:
             _one_of(case, [one.name for one in config.cases], where, f"{key}.cases")
         of = [structures[one.structure] for one in config.cases if not state.cases or one.name in state.cases]
-        told = [one for one in of if set(state.bodies) <= set(one.body_names)]
-        if not told or (state.cases and len(told) < len(of)):
-            lacking = next(one for one in of if one not in told)
+        complete = [one for one in of if set(state.bodies) <= set(one.body_names)]
+        if not complete or (state.cases and len(complete) < len(of)):
+            lacking = next(one for one in of if one not in complete)
             for body in state.bodies:
                 _one_of(body, lacking.body_names, where, f"{key}.{'body' if state.body else 'joint'}")
-        for structure in told:
+        for structure in complete:
             driven = [
                 name
                 for name, is_driven in zip(structure.body_names, structure.driven, strict=True)
@@ -366,10 +366,10 @@ def check_limits(asked, config, structures, where):
                     )
 
 
-def check_extension(asked, config, structures, where):
+def check_extension(settings, config, structures, where):
     """Pairs of cases that differ by the cause alone."""
     names = [case.name for case in config.cases]
-    for extended, nominal in asked.cases.items():
+    for extended, nominal in settings.cases.items():
         key = f"extension.cases.{extended}"
         _one_of(extended, names, where, "extension.cases")
         _one_of(nominal, names, where, key)
@@ -381,22 +381,22 @@ def check_extension(asked, config, structures, where):
         alike, others = (case.model_copy(update={"name": "", "structure": ""}) for case in pair)
         if alike != others:
             raise InputError(where, key, f"expected the motion, window, samples and test of {nominal}")
-    for name in asked.named_by:
-        _one_of(name, asked.cases, where, "extension.named_by")
+    for name in settings.named_by:
+        _one_of(name, settings.cases, where, "extension.named_by")
 
 
-def check_calibration(asked, config, structures, where):
+def check_calibration(settings, config, structures, where):
     """Models and measured cases of the study, and values of parameters that models and structures have a use for."""
     frictions = [name for name in config.ensemble.distributions if name.startswith("friction.")]
     known = [*frictions, *OTHERS]
     measured = [case.name for case in config.cases if case.measured is not None]
-    for name in asked.parameters or ():
+    for name in settings.parameters or ():
         _one_of(name, known, where, "calibration.parameters")
-    for name in asked.ranges:
-        _one_of(name, asked.parameters or known, where, f"calibration.ranges.{name}")
-    _each_once(asked.parameters or (), where, "calibration.parameters")
-    ranges = asked.ranges_of(config.ensemble.distributions)
-    for name, source in asked.linked.items():
+    for name in settings.ranges:
+        _one_of(name, settings.parameters or known, where, f"calibration.ranges.{name}")
+    _each_once(settings.parameters or (), where, "calibration.parameters")
+    ranges = settings.ranges_of(config.ensemble.distributions)
+    for name, source in settings.linked.items():
         _one_of(name, frictions, where, "calibration.linked")
         _one_of(
             source,
@@ -404,7 +404,7 @@ def check_calibration(asked, config, structures, where):
             where,
             f"calibration.linked.{name}",
         )
-    for model, names in asked.cases.items():
+    for model, names in settings.cases.items():
         key = f"calibration.cases.{model}"
         _one_of(model, config.models, where, key)
         _each_once(names, where, key)

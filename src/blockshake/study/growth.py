@@ -40,18 +40,19 @@ def grow(config, results):
     """
     state, ensemble = _state(config, results), config.ensemble
     size, found = min(state["size"], ensemble.size), accuracy(config, results)
-    asked = {name: one for name, one in ensemble.until.model_dump().items() if one is not None}
-    open_ones = [name for name, limit in asked.items() if not found[name] <= limit]
-    told = "; ".join(
-        f"{name.replace('_', ' ')} within {found[name]:.3g}, asked {limit:g}" for name, limit in asked.items()
+    limits = {name: one for name, one in ensemble.until.model_dump().items() if one is not None}
+    open_ones = [name for name, limit in limits.items() if not found[name] <= limit]
+    each = "; ".join(
+        f"{name.replace('_', ' ')} within {found[name]:.3g}, requested {limit:g}"
+        for name, limit in limits.items()
     )
     known = {name: one if np.isfinite(one) else None for name, one in found.items()}
     history = [*(one for one in state["history"] if one["size"] < size), {"size": size, **known}]
     stopped = not open_ones or size == ensemble.size
     if stopped:
-        words = f"stopped at {size} samples, {'as accurate as asked' if not open_ones else 'the largest size'}: {told}"
+        words = f"stopped at {size} samples, {'as accurate as set' if not open_ones else 'the largest size'}: {each}"
     else:
-        words = f"{size} samples are not enough: {told}"
+        words = f"{size} samples are not enough: {each}"
     new = {
         "key": _key(config),
         "size": size if stopped else size + ensemble.batch,

@@ -18,7 +18,7 @@ def has_endless_heap(path):
     Parameters
     ----------
     path : path
-        Of any file, not empty.
+        For any file, not empty.
 
     Notes
     -----

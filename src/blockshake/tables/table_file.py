@@ -74,7 +74,7 @@ class CellTable(NamedTuple):
         written = np.array([np.nan if number is None else number for number in numbers], dtype=float)
         coded = None if kind == "time" else missing_code(written)
         if coded is not None:
-            wrong = f"'{cells[coded]}' looks like a code for a missing one, which an empty cell says"
+            wrong = f"'{cells[coded]}' looks like a code for a missing one, which an empty cell states"
             raise InputError(self.source, f"line {self.lines[coded]}, {name}", f"expected a reading; {wrong}")
         try:
             values = np.array([np.nan if number is None else float(number * size) for number in numbers])
@@ -125,7 +125,7 @@ class CellTable(NamedTuple):
         stated += [known_unit(note) for note in noted if note != "min"]  # of rows of min, max and mean
         for unit in filter(None, stated):
             if unit != (kind, abs(size)):
-                wrong = f"expected {UNIT_NAMES[kind, abs(size)]}; the header says {UNIT_NAMES[unit]}"
+                wrong = f"expected {UNIT_NAMES[kind, abs(size)]}; the header states {UNIT_NAMES[unit]}"
                 raise InputError(self.source, f"column '{name}'", wrong)
 
     def fault(self, line, name, wrong, key="data"):
@@ -210,7 +210,7 @@ def csv_rows(path):
     Raises
     ------
     InputError
-        Missing file, or numbers with a decimal comma beside others with a point.
+        Missing file, or numbers with a decimal comma with others with a point.
     """
     lines = read_foreign_text(path).splitlines()
     separator = next((sign for sign in "\t;" if lines and sign in lines[0]), ",")

@@ -16,7 +16,7 @@ FORMATS = {".csv": "tables", ".vtkhdf": "ParaView", ".glb": "glTF"}
 
 
 def export(run: RunSource, output: AnyPath, meshes: AnyPath | None = None) -> list[Path]:
-    """Write a run in another program's format, atomically; a remark says where places count from, if not from 0.
+    """Write a run in another program's format, atomically; a remark states where places count from, if not from 0.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def export(run: RunSource, output: AnyPath, meshes: AnyPath | None = None) -> li
     Returns
     -------
     list of Path
-        The files, some of them beside ``output``.
+        The files, some of them with ``output``.
 
     Raises
     ------

@@ -32,7 +32,7 @@ from blockshake.simulation.run_histories import run_histories
 _ROW, _MAP_ROW, _TITLE = 0.031, 0.042, 0.018  # m of paper
 _TITLE_LETTERS = 105
 _COLORS = (BLUE, ORANGE, GREEN, RED, SKY, PURPLE, BLACK)
-_MOST_NAMES = 12  # beside a map
+_MOST_NAMES = 12  # next to a map
 _EITHER_SIGN, _ONE_SIGN = "PuOr_r", "cividis"
 _SIDEWAYS = 0.1  # of the largest drift along x, from which on a drift along y has a panel
 # a normal force that peaks at so many times this quantile, in impacts, is shown up to so many times it

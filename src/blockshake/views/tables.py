@@ -12,7 +12,7 @@ _UNITS = {"1": "", "m": "_m", "m s-1": "_m_s", "m s-2": "_m_s2", "rad s-1": "_ra
 
 
 def write_tables(path, run, histories):
-    """Write the tables of a run beside each other, all or none; the files are returned.
+    """Write the tables of a run next to each other, all or none; the files are returned.
 
     ``run.csv`` gives ``run-bodies.csv``, ``run-joints.csv``, ``run-markers.csv``, ``run-energy.csv``,
     ``run-accelerometers.csv`` and ``run-transducers.csv``, those without a row left out. ``run`` and ``histories`` are

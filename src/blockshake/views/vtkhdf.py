@@ -32,7 +32,7 @@ def local_origin(run):
 def write_vtkhdf(path, run, histories, structure):
     """Write the blocks and the joints of a run as VTKHDF, both or none; the files are returned.
 
-    ``run.vtkhdf`` holds the blocks; the joints go to ``run-joints.vtkhdf`` beside it, where there are any. ``run`` and
+    ``run.vtkhdf`` holds the blocks; the joints go to ``run-joints.vtkhdf`` with it, where there are any. ``run`` and
     ``histories`` are from `load_run` and `run_histories`.
 
     Notes

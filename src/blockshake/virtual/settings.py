@@ -18,7 +18,7 @@ from blockshake.measurement.sensors.markers import RATE, driven_marker
 from blockshake.simulation.limits import LONGEST_STEP, MOST_STEPS
 from blockshake.simulation.models import ModelName, model_of, split_parameters
 from blockshake.simulation.simulate import check_run
-from blockshake.study.ensembles.rungs import Rungs
+from blockshake.study.ensembles.intensity_ladder import IntensityLevels
 from blockshake.validation import Count, Finite, NotNegative, Positive, Strict, validated
 from blockshake.virtual.truth import hidden_effect
 
@@ -26,7 +26,7 @@ _FEWEST_READINGS = 40  # of a test
 _Place = dict[str, str | tuple[str, str]]
 
 
-class Intensities(Rungs):
+class Intensities(IntensityLevels):
     """The ladder of strong tests of every motion, until a potential collapse."""
 
     largest_drift: Positive = Field(

@@ -6,7 +6,7 @@ from scipy.interpolate import CubicSpline
 
 from blockshake.effects.effect import Experiment
 from blockshake.effects.registry import with_effect
-from blockshake.measurement.campaigns.starting_places import placed
+from blockshake.measurement.campaigns.initial_poses import placed
 from blockshake.measurement.sensors.instruments import observe
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.models import part_parameters
@@ -31,7 +31,7 @@ def shake(structure, parameters, effect, motion, settings, places, duration, see
     duration : float
         [s]
     seed : int
-        Of noise and survey.
+        Noise and survey.
     surveyed : Structure, optional
         The one that the survey knows, where the blocks stand on bodies that it does not.
 

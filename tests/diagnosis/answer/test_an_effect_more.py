@@ -9,7 +9,7 @@ from blockshake.effects.effect import Experiment
 from blockshake.effects.friction.friction_asymmetry import EFFECT
 from blockshake.effects.registry import with_effect
 from blockshake.files import PACKAGE
-from blockshake.forces.seen.seen_test import see_test
+from blockshake.forces.seen.reconstructed_test import reconstruct_test
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import Sensors
 from blockshake.measurement.sensors.instruments import Instruments, observe
@@ -28,7 +28,7 @@ def _seen(seed, motion, scale):
     nominal = _experiment(motion, scale)
     true = with_effect(nominal, EFFECT.name, {"asymmetry": TRUE}, {})
     run = simulate(true.structure, true.motion, "nscd-rigid", duration=6.0, output_rate=200.0)
-    return see_test(
+    return reconstruct_test(
         f"t{seed}", observe(run, true.structure, true.instruments, seed), nominal.structure, Sensors()
     )
 

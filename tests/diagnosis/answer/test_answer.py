@@ -8,10 +8,10 @@ import pytest
 
 from blockshake.diagnosis.answer.answer import (
     COARSENING,
-    Rival,
+    Alternative,
     coarsened,
     find_causes,
-    needed_beside,
+    further_need,
     rank,
     share_of,
     slab_groups,
@@ -22,7 +22,9 @@ from blockshake.diagnosis.outside import free_force
 
 def rivals(**scores):
     """By falling score; the gain is the score."""
-    found = [Rival(name.replace("_", "-"), "there", gain, gain, ("there",)) for name, gain in scores.items()]
+    found = [
+        Alternative(name.replace("_", "-"), "there", gain, gain, ("there",)) for name, gain in scores.items()
+    ]
     return sorted(found, key=lambda one: -one.score)
 
 
@@ -55,9 +57,9 @@ def test_a_rival_within_the_odds_is_in_the_set_and_forms_from_outside_are_said()
 
 def test_a_second_cause_needs_more_beside_a_large_first_one():
     small, large = rivals(push=1e-9), rivals(push=1000.0)
-    assert needed_beside(False) == 0.0
-    assert needed_beside(False, large) - needed_beside(False, small) == pytest.approx(100.0)
-    assert needed_beside(True, small) > needed_beside(False, small) > 0.0
+    assert further_need(False) == 0.0
+    assert further_need(False, large) - further_need(False, small) == pytest.approx(100.0)
+    assert further_need(True, small) > further_need(False, small) > 0.0
     assert found(rivals(weak_joint=15.0), more=10.0) is None
     assert causes(found(rivals(weak_joint=17.0), more=10.0)) == ("weak-joint",)
 
@@ -119,7 +121,7 @@ class OfTwoBlocks:
 def test_places_are_told_apart_where_the_readings_tell_them(contrast, joined, places):
     (rival,) = rank(OfTwoBlocks(contrast), joined=joined)
     assert rival.places == places
-    # beside it the same cause at one of its places is no other cause
+    # with it the same cause at one of its places is no other cause
     left = [place for place in OfTwoBlocks.gains if place not in places]
     again = rank(OfTwoBlocks(contrast), joined=joined, known=[rival])
     assert [one.place for one in again] == left[:1]

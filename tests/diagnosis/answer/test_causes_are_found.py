@@ -15,7 +15,7 @@ MOTIONS = {
 STARTS = {"weak": 3.0, "first": 2.5, "second": 2.0, "third": 3.0}  # s, of a push
 TOP = {"body": "block-2", "height": 0.42}
 BASE = {"joint": ["slab", "block-1"]}
-# cause, place, size, what else it is, structure; the first of the sizes is the one that is asked for
+# cause, place, size, what else it is, structure; the first of the sizes is the one that is requested
 CAUSES = [
     ("eccentricity", {"body": "block-2"}, {"offset": 0.06}, {}, "two-blocks"),
     ("push", TOP, {"force": 4000.0}, {"starts": STARTS}, "two-blocks"),

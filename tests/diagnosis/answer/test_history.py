@@ -4,10 +4,10 @@ import pytest
 from simulated_tests import seen_tests
 
 from blockshake.diagnosis.answer.decide import decide
-from blockshake.diagnosis.verdict.ladder import rung
+from blockshake.diagnosis.verdict.grade import grade
 from blockshake.diagnosis.verdict.verdict import MeasuredGain
 from blockshake.effects.registry import with_effect
-from blockshake.measurement.campaigns.starting_places import placed
+from blockshake.measurement.campaigns.initial_poses import placed
 
 MOTIONS = {
     "first": ("alkion", 2.5), "second": ("basso-tirreno", 2.0), "third": ("alkion", 2.5), "fourth": ("alkion", 2.8),
@@ -100,5 +100,5 @@ def test_friction_that_polishes_from_test_to_test_is_a_path_and_holds_back_a_cau
     assert path.beats == decision.parts[0].causes[0].name
     assert (
         "sizes that change from test to test explain more"
-        in rung("named", decision, False, MeasuredGain()).missing
+        in grade("named", decision, False, MeasuredGain()).missing
     )

@@ -7,7 +7,7 @@ from blockshake.diagnosis.answer.limits import _by_place, from_null, largest, us
 from blockshake.diagnosis.answer.thresholds import by_odds
 from blockshake.diagnosis.evidence.explanation import best_of
 from blockshake.diagnosis.evidence.likelihood import Likelihood, from_rows
-from blockshake.effects.effect import Columns
+from blockshake.effects.effect import DesignMatrix
 
 DRAWS, ROWS, SCALE = 400, 60, 0.06
 NAME = "eccentricity"
@@ -21,7 +21,7 @@ def made():
     covariance = np.exp(-np.abs(time[:, None] - time) / 0.03) * 0.5 + 0.5 * np.eye(ROWS)
     column, nuisance = generator.normal(0.0, 100.0, (2, ROWS))
     likelihood = from_rows([covariance], [np.zeros(ROWS)], [[0.003 * nuisance]])
-    return likelihood, [[Columns({}, column[:, None], (SCALE,), False)]]
+    return likelihood, [[DesignMatrix({}, column[:, None], (SCALE,), False)]]
 
 
 def _found(likelihood, variants, size, generator):

@@ -72,7 +72,7 @@ def test_a_slow_push_tells_a_weak_joint_from_friction_that_falls_with_rate(seen)
 
 @pytest.mark.parametrize(("square", "behind"), [(12.0, 0.5), (30.0, 2.0), (4.0, 0.0)])
 def test_the_chance_of_a_split_is_that_of_the_log_odds(seen, square, behind):
-    """Of two Gaussians R apart the log odds have the mean R/2 and the variance R."""
+    """Two Gaussians R apart the log odds have the mean R/2 and the variance R."""
     true, rival = _cause("weak-joint", BASE, odds=behind), _cause("push", {})
     generator = np.random.default_rng(3)
     drawn = -behind + 0.5 * square + np.sqrt(square) * generator.standard_normal(100_000)
@@ -113,7 +113,7 @@ def test_where_the_block_is_not_known_weighing_one_splits_as_often_as_it_is_the_
 
 
 def test_a_form_of_the_size_is_not_taken_for_the_size(seen):
-    """Of worn edges ``when`` says how the inset goes with the rotation, under the name of the size."""
+    """For worn edges ``when`` states how the inset goes with the rotation, under the name of the size."""
     worn = _cause("reduced-bearing", {}, inset=0.05, when={"inset": "rolling"})
     ((middle, errors),) = readings_of_cause(seen, worn)
     assert set(middle.values()) == {-0.05}

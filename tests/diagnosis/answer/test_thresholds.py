@@ -23,7 +23,7 @@ def clean(generator):
 
 
 def loop(generator):
-    """A structure whose own runs always speak for one cause."""
+    """A structure whose own runs always support one cause."""
     return clean(generator) | {CAUSES[0]: generator.normal(30.0, 10.0)}
 
 

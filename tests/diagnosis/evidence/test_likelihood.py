@@ -9,7 +9,7 @@ from blockshake.diagnosis.answer.size import size_of
 from blockshake.diagnosis.evidence.explanation import best_of
 from blockshake.diagnosis.evidence.likelihood import from_rows
 from blockshake.diagnosis.evidence.stop_search import _gains_of_pairs, explain_stops
-from blockshake.effects.effect import Columns
+from blockshake.effects.effect import DesignMatrix
 
 
 def _covariance(size, seed):
@@ -92,7 +92,7 @@ def test_columns_among_the_nuisances_leave_what_they_explained_but_for_the_error
     spread = np.concatenate(columns) * scales
     whole = covariance + spread @ spread.T + np.diag([1.0] * 7 + [2.0] * 5)
     expected = multivariate_normal(cov=whole).logpdf(value)
-    beside = likelihood.beside(columns, scales, errors).log_evidence
+    beside = likelihood.given(columns, scales, errors).log_evidence
     assert beside == pytest.approx(expected + 0.5 * len(value) * np.log(2.0 * np.pi) - 0.7, rel=1e-12)
 
 
@@ -123,7 +123,7 @@ def test_evidence_of_a_size_that_no_structure_exceeds_is_an_integral_over_its_su
 
     inside = prior.cdf(most) - prior.cdf(-most)
     expected = np.log(quad(integrand, -most, most, epsabs=0.0)[0] / inside)
-    variant = [Columns({}, rows[:, :1], (scale,), False, most) for rows in columns]
+    variant = [DesignMatrix({}, rows[:, :1], (scale,), False, most) for rows in columns]
     found = best_of(likelihood, "eccentricity", "block-1", [variant])
     assert found.gain == pytest.approx(expected, rel=1e-9)
     drawn = size_of("eccentricity", "block-1", *[(found.fits, np.zeros(1))] * 2)["offset"]
@@ -137,7 +137,7 @@ def test_two_causes_beside_each_other_have_the_sizes_of_their_joint_posterior(pr
     pair = likelihood.amplitudes(likelihood.whiten([rows[:, :2] for rows in columns]), np.array([0.5, 2.0]))
     none = [np.zeros((len(rows),) * 2) for rows in columns]
     for own, other, scales, number in ((first, second, (0.5, 2.0), 0), (second, first, (2.0, 0.5), 1)):
-        beside = likelihood.beside(other, np.array([scales[1]]), none)
+        beside = likelihood.given(other, np.array([scales[1]]), none)
         alone = beside.amplitudes(beside.whiten(own), np.array([scales[0]]))
         assert alone.mean[0] == pytest.approx(pair.mean[number])
         assert alone.covariance[0, 0] == pytest.approx(pair.covariance[number, number])
@@ -152,7 +152,7 @@ def test_a_stop_with_the_smallest_gaps_on_both_sides_is_a_spring(gap, is_stop):
         return -side * np.maximum(side * moved - clear, 0.0)
 
     variants = [
-        [Columns({"gap": one, "side": side}, force(side, one)[:, None], (1e7,), True)]
+        [DesignMatrix({"gap": one, "side": side}, force(side, one)[:, None], (1e7,), True)]
         for side in (1, -1)
         for one in gaps
     ]

@@ -9,7 +9,7 @@ import yaml
 from tiny_campaign import write_campaign
 
 from blockshake.diagnosis import steps
-from blockshake.diagnosis.evidence.seen_campaign import see_campaign, see_sealed
+from blockshake.diagnosis.evidence.reconstructed_campaign import reconstruct_campaign, reconstruct_sealed
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE, write_dataset
 from blockshake.measurement.campaigns import campaign as campaign_module
@@ -41,7 +41,7 @@ def test_every_open_file_is_read_once_and_the_sealed_one_never(folder, monkeypat
         "read_test",
         lambda path, structure: read.append(path.name) or original(path, structure),
     )
-    found = see_campaign(load_campaign(folder))
+    found = reconstruct_campaign(load_campaign(folder))
     assert read == ["one-100.nc", "two-100.nc"]
     assert [test.name for test in found.tests] == OPEN
     assert (found.parity.findings, found.parity.falls, found.unseen) == ((), {}, {})
@@ -51,7 +51,7 @@ def test_every_open_file_is_read_once_and_the_sealed_one_never(folder, monkeypat
 def test_a_copy_of_a_test_is_no_new_evidence(folder):
     shutil.copy(folder / "one-100.nc", folder / "again.nc")
     _with_test(folder, "again", "one-100")
-    found = see_campaign(load_campaign(folder))
+    found = reconstruct_campaign(load_campaign(folder))
     assert [test.name for test in found.tests] == OPEN
     assert list(found.parity.gaps) == OPEN
 
@@ -59,9 +59,9 @@ def test_a_copy_of_a_test_is_no_new_evidence(folder):
 def test_a_sealed_test_is_not_opened(folder):
     (folder / "one-150.nc").write_text("not a netCDF file: opening it would be another error")
     campaign = load_campaign(folder)
-    see_campaign(campaign)
+    reconstruct_campaign(campaign)
     with pytest.raises(InputError, match="one-150"):
-        see_sealed(campaign)
+        reconstruct_sealed(campaign)
 
 
 def test_a_fault_is_taken_out_before_a_test_is_seen(folder):
@@ -73,7 +73,7 @@ def test_a_fault_is_taken_out_before_a_test_is_seen(folder):
             path, test.assign(marker_displacement=test["marker_displacement"] * xr.where(own, 1.1, 1.0))
         )
     campaign = load_campaign(folder)
-    found, kept = see_campaign(campaign), see_campaign(campaign, ["sensor-gain"])
+    found, kept = reconstruct_campaign(campaign), reconstruct_campaign(campaign, ["sensor-gain"])
     assert [(finding.effect, finding.where) for finding in found.parity.findings] == [
         ("sensor-gain", ("block-2-upper",))
     ]
@@ -84,7 +84,7 @@ def test_a_fault_is_taken_out_before_a_test_is_seen(folder):
 
 def test_a_test_too_short_for_the_kernel_is_said(folder):
     write_dataset(folder / "one-100.nc", xr.load_dataset(folder / "one-100.nc").isel(time=slice(40)))
-    found = see_campaign(load_campaign(folder))
+    found = reconstruct_campaign(load_campaign(folder))
     assert found.unseen == {"one-100": "the test is too short"}
     assert [test.name for test in found.tests] == ["two-100"]
 
@@ -102,6 +102,6 @@ def test_sensors_without_stated_noise_are_the_best_instruments(folder):
     silent = {"marker_noise": 0.0, "accelerometer_noise": 0.0}
     path = folder / "campaign.yaml"
     path.write_text(yaml.safe_dump(yaml.safe_load(path.read_text()) | {"sensors": silent}))
-    found = see_campaign(load_campaign(folder))
+    found = reconstruct_campaign(load_campaign(folder))
     assert all(np.isfinite(part).all() for test in found.tests for part in test.rows.noise.values())
-    assert [test.name for test in found.tests] == [test.name for test in see_campaign(campaign).tests]
+    assert [test.name for test in found.tests] == [test.name for test in reconstruct_campaign(campaign).tests]

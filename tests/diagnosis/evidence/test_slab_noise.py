@@ -5,7 +5,7 @@ import pytest
 from known_blocks import readings, stack
 
 from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
-from blockshake.forces.seen.seen_test import see_test
+from blockshake.forces.seen.reconstructed_test import reconstruct_test
 from blockshake.measurement.campaigns.campaign import Sensors
 
 NOISE = 3e-4  # m
@@ -26,7 +26,7 @@ def test_a_rest_that_is_quiet_by_chance_is_no_vertical_motion(seed):
     # the markers of the slab say a third of their noise while the table rests
     own = [str(name).startswith("slab") for name in read["marker"].values]
     read["marker_displacement"][dict(time=slice(0, 120), marker=own)] /= 3.0
-    seen = see_test("still", read, structure, Sensors(marker_noise=NOISE, accelerometer_noise=0.02))
+    seen = reconstruct_test("still", read, structure, Sensors(marker_noise=NOISE, accelerometer_noise=0.02))
     slab = slab_motion(seen)
     moving = seen.motion.time > 0.7
     assert slab.lift_noise == pytest.approx(slab.lift[moving].std(), rel=0.25)

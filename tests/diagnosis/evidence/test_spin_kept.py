@@ -1,13 +1,13 @@
-"""Evidence of restitution: impacts of a known share against what sound models keep."""
+"""Evidence of restitution: impacts of a known share against what undamaged models keep."""
 
 import numpy as np
 import pytest
 from known_blocks import kicked, readings, rocking, stack
 
-from blockshake.diagnosis.evidence import spin_kept
-from blockshake.diagnosis.evidence.spin_kept import restitution_gain
+from blockshake.diagnosis.evidence import angular_momentum_ratio
+from blockshake.diagnosis.evidence.angular_momentum_ratio import restitution_gain
 from blockshake.forces.seen.impacts import Impact
-from blockshake.forces.seen.seen_test import see_test
+from blockshake.forces.seen.reconstructed_test import reconstruct_test
 from blockshake.measurement.campaigns.campaign import Sensors
 
 NEEDED = 8.0  # nats
@@ -16,7 +16,7 @@ NEEDED = 8.0  # nats
 @pytest.fixture
 def judged(monkeypatch):
     """Judge impacts that are given in place of tests."""
-    monkeypatch.setattr(spin_kept, "find_impacts", lambda impacts: impacts)
+    monkeypatch.setattr(angular_momentum_ratio, "find_impacts", lambda impacts: impacts)
     return lambda impacts: restitution_gain([impacts])
 
 
@@ -75,6 +75,6 @@ def test_returns_are_counted_and_tests_without_impacts_say_so(judged):
 def test_from_readings_to_evidence(share, named):
     structure, sensors = stack(1), Sensors(marker_noise=1e-4, accelerometer_noise=0.02)
     read = readings(structure, rocking(lambda t: 0.0, kicked([share], kick=1.0)), 1e-4, 0.02)
-    found = restitution_gain([see_test("kicked", read, structure, sensors)])
+    found = restitution_gain([reconstruct_test("kicked", read, structure, sensors)])
     assert (found.gain > NEEDED) == named
     assert found.interval[0] <= share <= found.interval[1]

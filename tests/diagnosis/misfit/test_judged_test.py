@@ -1,4 +1,4 @@
-"""A measured test beside ensembles of two solvers: what is judged, and until when."""
+"""A measured test with ensembles of two solvers: what is judged, and until when."""
 
 import numpy as np
 import xarray as xr

@@ -29,12 +29,12 @@ def off_centre(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def sound(tmp_path_factory):
-    """A column as its structure file says."""
+    """A column as its structure file states."""
     return made_campaign(tmp_path_factory.mktemp("made") / "sound", {})
 
 
 def test_slopes_of_the_law_come_out_of_a_few_leans(off_centre):
-    """The emulator is told leans between 0.3 and 20 degrees, and of all others the side alone."""
+    """The emulator is reported leans between 0.3 and 20 degrees, and of all others the side alone."""
     (emulator,) = load_outcomes(off_centre[1]).emulators
     linear = dict(zip(NAMES, emulator.slopes, strict=False))
     for name in NAMES:

@@ -6,7 +6,7 @@ import pytest
 
 from blockshake.cli import main
 from blockshake.diagnosis.planning import plan
-from blockshake.diagnosis.planning.nominal_tests import load_asked
+from blockshake.diagnosis.planning.nominal_tests import load_planned
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE, write_text
 
@@ -23,7 +23,7 @@ markers:
 def test_the_command_writes_a_plan(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(plan, "CAMPAIGNS", 1)
     monkeypatch.setattr(plan, "OF_ADDITIONS", 1)
-    asked = [
+    planned = [
         "plan-campaign",
         STRUCTURE,
         "--motions",
@@ -33,12 +33,12 @@ def test_the_command_writes_a_plan(tmp_path, monkeypatch, capsys):
         "--output",
         str(tmp_path),
     ]
-    assert main(asked) == 0
+    assert main(planned) == 0
     written = json.loads((tmp_path / "plan.json").read_text())
     assert written["tests"] == ["alkion@5.5"]
     limits = written["effects"]["eccentricity"]["limits"]
     assert 0.0 < limits["block-1"] < 0.15
-    # nothing is told apart before it is seen
+    # nothing is distinguished before it is seen
     for one in written["effects"].values():
         seen = one["limits"][one["place"]]
         assert all(size is None or abs(size) >= 0.999 * abs(seen) for size in one["told_apart"].values())
@@ -51,16 +51,16 @@ def test_the_command_writes_a_plan(tmp_path, monkeypatch, capsys):
         "weigh block-1 on two supports",
     } <= set(words)
     printed = capsys.readouterr().out
-    assert "told from" in printed
+    assert "distinguished from" in printed
     assert "SYNTHETIC" in (tmp_path / "plan.html").read_text()
 
 
 def test_sensors_of_a_file_are_the_chosen_ones_and_their_noise_counts(tmp_path):
     write_text(tmp_path / "sensors.yaml", SENSORS.replace("BODY", "block-1"))
-    asked = load_asked(STRUCTURE, ["alkion"], str(tmp_path / "sensors.yaml"))
-    assert asked.chosen == {"a", "b", "c"}
-    assert asked.sensors.marker_noise == 2e-4
-    assert set(asked.motions) == {"alkion@1"}
+    planned = load_planned(STRUCTURE, ["alkion"], str(tmp_path / "sensors.yaml"))
+    assert planned.chosen == {"a", "b", "c"}
+    assert planned.sensors.marker_noise == 2e-4
+    assert set(planned.motions) == {"alkion@1"}
 
 
 @pytest.mark.parametrize(
@@ -80,7 +80,7 @@ def test_bad_input_is_one_line(tmp_path, motions, sensors, words):
         file = str(tmp_path / "sensors.yaml")
         write_text(file, sensors)
     with pytest.raises(InputError, match=words) as error:
-        load_asked(STRUCTURE, motions, file)
+        load_planned(STRUCTURE, motions, file)
     assert "\n" not in str(error.value)
 
 

@@ -130,7 +130,7 @@ def departures(kind, bodies):
 
 
 def histories(tests, joints, top, kinds=None):
-    """Bands of ensembles beside measured curves, by kind where there are several."""
+    """Bands of ensembles with measured curves, by kind where there are several."""
     time = np.arange(0.0, 6.0, 0.02)
     cells = [("rotation", joint, "rad") for joint in joints] + [("slip", joint, "m") for joint in joints]
     cells.append(("drift", top, "m"))

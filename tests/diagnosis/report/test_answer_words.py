@@ -7,7 +7,7 @@ from fake_findings import ECCENTRIC, KINDS, part
 from blockshake.diagnosis.answer.decision import Cause, Estimate, Measurement, Part
 from blockshake.diagnosis.gain.section import effect_section
 from blockshake.diagnosis.report.answer_section import next_tests_table, percent_words
-from blockshake.diagnosis.report.statement import not_told, statement, until_then
+from blockshake.diagnosis.report.statement import not_distinguished, statement, until_then
 from blockshake.diagnosis.verdict.verdict import Contrast
 from blockshake.diagnosis.wording import (
     NO_ERROR,
@@ -36,7 +36,7 @@ STATED = {
         "2.20 s of alkion-250",
     ),
 }
-NOT_TOLD = {
+NOT_DISTINGUISHED = {
     "named": ("The other cause that was tried, an edge that changed", "160,000 times"),
     "ambiguous": ("Joint of low friction", "friction that falls with slip rate (4.5 times)", "20 times"),
     "unknown": (
@@ -55,10 +55,10 @@ def test_the_answer_says_what_acts_where_and_how_large(found, kind):
     assert [part for part in STATED[kind] if part not in said] == []
 
 
-@pytest.mark.parametrize("kind", NOT_TOLD)
+@pytest.mark.parametrize("kind", NOT_DISTINGUISHED)
 def test_what_is_not_told_from_the_answer_follows_it(found, kind):
-    (said,) = not_told(found[kind])
-    assert [part for part in NOT_TOLD[kind] if part not in said] == []
+    (said,) = not_distinguished(found[kind])
+    assert [part for part in NOT_DISTINGUISHED[kind] if part not in said] == []
 
 
 def test_until_then_is_the_largest_upper_limit_of_the_drift_of_all_sealed_tests(found):
@@ -82,7 +82,7 @@ def test_until_then_is_the_largest_upper_limit_of_the_drift_of_all_sealed_tests(
 
 
 def test_every_part_of_a_combination_has_its_own_sentence(found):
-    of_slab, of_joints = not_told(found["combination"])
+    of_slab, of_joints = not_distinguished(found["combination"])
     assert of_slab.startswith("Rotation of the slab: no other cause")
     assert of_joints.startswith("Joints: the other cause that was tried, an edge that changed")
 
@@ -92,7 +92,9 @@ def test_a_height_that_is_not_told_is_not_called_a_place():
     cause |= {"places": ["block-3@0.42", "block-3@0"], "parameters": {}}
     one = Part.model_validate(part("joints", cause))
     found = SimpleNamespace(decision=SimpleNamespace(parts=[one]), bodies=("block-3",))
-    assert not_told(found)[0].endswith("The height is not known; the most probable is top of block-3.")
+    assert not_distinguished(found)[0].endswith(
+        "The height is not known; the most probable is top of block-3."
+    )
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from page import CLAIMS, Page
 from blockshake.diagnosis.answer.decision import Part
 from blockshake.diagnosis.report.content import load_diagnosed
 from blockshake.diagnosis.report.report import compose_diagnosis, make_diagnosis_report
-from blockshake.diagnosis.report.statement import not_told, statement, until_then
+from blockshake.diagnosis.report.statement import not_distinguished, statement, until_then
 from blockshake.diagnosis.verdict.track_record import procedure_digest
 from blockshake.diagnosis.verdict.verdict import NOTHING_TO_GAIN, load_verdict
 from blockshake.errors import InputError
@@ -72,7 +72,9 @@ def test_the_page_opens_with_the_answer_and_claims_no_more_than_its_word(pages, 
     box, *following = documents[kind].sections[0].blocks
     assert box.sentence == statement(found[kind])
     assert box.sentence.lower().startswith(found[kind].verdict.word)
-    assert [block.text for block in following[: len(not_told(found[kind]))]] == not_told(found[kind])
+    assert [block.text for block in following[: len(not_distinguished(found[kind]))]] == not_distinguished(
+        found[kind]
+    )
     assert documents[kind].sections[0].blocks[-1].kind == "figure"
     assert not [claim for claim in CLAIMS if claim in text.lower()]
 
@@ -161,9 +163,9 @@ def test_every_cause_of_the_set_has_its_size(documents):
 
 def test_gain_stands_on_forces_and_on_responses(documents):
     (gains,) = blocks_of(documents["named"], "table", "gain")
-    assert gains.header == ("Rival", "Forces", "Responses")
+    assert gains.header == ("Alternative", "Forces", "Responses")
     assert {row[1:] for row in gains.rows} == {("80 % (70 to 90 %)", "60 % (50 to 70 %)")}
-    assert blocks_of(documents["unknown"], "table", "gain")[0].header == ("Rival", "Forces")
+    assert blocks_of(documents["unknown"], "table", "gain")[0].header == ("Alternative", "Forces")
 
 
 def test_the_report_ends_with_what_the_cause_changes(documents):
@@ -181,7 +183,7 @@ def test_the_report_ends_with_what_the_cause_changes(documents):
     assert items.items[0].startswith(
         f"{SEALED[0]}, 24 pairs of samples: eccentric mass of a block changes median"
     )
-    assert "Not told from no change: probability of collapse." in items.items[0]
+    assert "Not distinguished from no change: probability of collapse." in items.items[0]
     assert all(section.key != "effect" for section in documents["none"].sections)
 
 

@@ -35,7 +35,7 @@ def test_a_name_has_its_parameter_and_its_rivals():
     assert verdict.parameters["table-pitch"]["coefficient"].upper == 5e-4
     assert (verdict.odds, verdict.places) == ({"table-pitch": 0.0}, {"table-pitch": ("there",)})
     assert (verdict.excluded_above, verdict.location) == ({}, {})
-    assert verdict.next_test == EFFECTS["table-pitch"].told_apart_by
+    assert verdict.next_test == EFFECTS["table-pitch"].distinguished_by
 
 
 @pytest.mark.parametrize(("lower", "proposed"), [(0.1, True), (0.0, False), (-0.4, False), (None, True)])
@@ -105,7 +105,7 @@ def test_a_sensor_fault_beside_a_form_from_outside_is_a_combination_with_both():
     assert verdict.parameters["sensor-gain"]["error"].estimate == 0.03
     assert verdict.outside.form == "push"
     assert verdict.word == "probable"
-    assert "a force from outside acts beside it" in verdict.missing
+    assert "a force from outside acts with it" in verdict.missing
 
 
 def test_a_form_beside_an_effect_keeps_it_from_being_alone():

@@ -1,16 +1,16 @@
-"""Each rung of the ladder of words, and every reason for which a cause is not called established."""
+"""Each rung of confidence of words, and every reason for which a cause is not called established."""
 
 import pytest
 from made_up_decision import made_up_decision
 
-from blockshake.diagnosis.verdict.ladder import ESTABLISHED, NOTHING, ONE_OF, PROBABLE, UNKNOWN, rung
+from blockshake.diagnosis.verdict.grade import ESTABLISHED, NOTHING, ONE_OF, PROBABLE, UNKNOWN, grade
 from blockshake.diagnosis.verdict.verdict import NOTHING_TO_GAIN, Contrast, Gain, MeasuredGain
 
 NAMED = made_up_decision("named", ("table-pitch",))
 GAINED = Contrast(estimate=0.5, lower=0.2, upper=0.8)
 GAIN = Gain(recalibrated=GAINED, nominal=GAINED, discrepancy=GAINED)
 MEASURED = MeasuredGain(rows=GAIN, gain=GAIN)
-SOUND = {"kind": "named", "decision": NAMED, "beside_sensor": False, "measured": MEASURED}
+SOUND = {"kind": "named", "decision": NAMED, "with_sensor_fault": False, "measured": MEASURED}
 
 
 def _with(where, rival, **changed):
@@ -19,7 +19,7 @@ def _with(where, rival, **changed):
 
 
 def test_a_cause_that_lacks_nothing_is_established():
-    assert rung(**SOUND) == (ESTABLISHED, ())
+    assert grade(**SOUND) == (ESTABLISHED, ())
 
 
 @pytest.mark.parametrize(
@@ -28,7 +28,7 @@ def test_a_cause_that_lacks_nothing_is_established():
         ({"decision": NAMED.model_copy(update={"silent": ("t1",)})}, "joints moved in 2 of 3 tests only"),
         ({"decision": NAMED.model_copy(update={"tests": ("t1", "t2")})}, "it was judged by 2 tests only"),
         ({"decision": made_up_decision("combination", ("table-pitch",), ("weak-joint",))}, "two causes"),
-        ({"beside_sensor": True}, "sensor's fault acts beside"),
+        ({"with_sensor_fault": True}, "sensor's fault acts with"),
         ({"measured": MEASURED.model_copy(update={"gain": None})}, "responses"),
         ({"measured": MEASURED.model_copy(update={"rows": None})}, "forces"),
         (_with("rows", "recalibrated", lower=-0.1), "nothing or a loss"),
@@ -37,7 +37,7 @@ def test_a_cause_that_lacks_nothing_is_established():
     ],
 )
 def test_established_asks_for_all_of_the_ladder(change, reason):
-    word, missing = rung(**SOUND | change)
+    word, missing = grade(**SOUND | change)
     assert word == PROBABLE
     assert len(missing) == 1
     assert reason in missing[0]
@@ -45,9 +45,9 @@ def test_established_asks_for_all_of_the_ladder(change, reason):
 
 @pytest.mark.parametrize(("kind", "word"), [("none", NOTHING), ("unknown", UNKNOWN), ("ambiguous", ONE_OF)])
 def test_other_answers_have_a_word_of_their_own(kind, word):
-    assert rung(**SOUND | {"kind": kind}) == (word, ())
+    assert grade(**SOUND | {"kind": kind}) == (word, ())
 
 
 def test_a_sensor_fault_alone_is_probable_at_most():
-    found = rung(**SOUND | {"decision": made_up_decision(), "beside_sensor": True})
+    found = grade(**SOUND | {"decision": made_up_decision(), "with_sensor_fault": True})
     assert found == (PROBABLE, ("the sensors' checks alone found it",))

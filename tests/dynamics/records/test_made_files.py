@@ -24,7 +24,7 @@ TIMES = [f"{STEP * row:.2f}" for row in range(COUNT)]
 
 
 class Made(NamedTuple):
-    """A file and what it says."""
+    """A file and what it states."""
 
     name: str
     content: str | bytes
@@ -269,11 +269,11 @@ TABLES = [
     ("t.csv", "t,a\n0,01,5\n0,02,6\n", (*TABLE, "mm/s2"), "line 2: expected at most 2 cells, found 3"),
     ("t.txt", "t a b\n0 1 2\n0.1 3\n0.2 1 2\n", (*TABLE, "mm/s2"), "line 3: expected 3 cells"),
     ("t.csv", table(names=("t", "a [g]")), ("--time", "t", "--column", "x=a [g]", "--unit", "m/s2"),
-     "column 'a [g]': expected m/s2; the header says g"),
+     "column 'a [g]': expected m/s2; the header states g"),
     ("t.csv", table(names=("t_ms", "a")), ("--time", "t_ms", "--column", "x=a", "--unit", "m/s2"),
-     "column 't_ms': expected s; the header says ms"),
+     "column 't_ms': expected s; the header states ms"),
     ("t.csv", table().replace("t,a\n", "t,a\nms,g\n"), (*TABLE, "g", "--data", "3"),
-     "column 't': expected s; the header says ms"),
+     "column 't': expected s; the header states ms"),
     ("t.csv", table().replace(f",{CM[3]:.3f}\n", ",-999\n"), (*TABLE, "g"), "'-999' looks like a code"),
     ("t.csv", table().replace(f",{CM[3]:.3f}\n", ",9999\n"), (*TABLE, "g"), "'9999' looks like a code"),
     ("t.csv", table().replace(f",{CM[3]:.3f}\n", ",nan\n"), (*TABLE, "g"), "line 5, a: expected a finite number"),
@@ -281,12 +281,12 @@ TABLES = [
     ("t.csv", table(times=[*TIMES[:9], *(f"{float(at) + 3.0:.2f}" for at in TIMES[9:])]), (*TABLE, "g"),
      "line 11, t: expected rows 0.01 s apart as elsewhere; 3.01 s after 0.08 s have none, 1 such gaps in all"),
     *(("t.csv", table(names=("t", name)), ("--time", "t", "--column", f"x={name}", "--unit", "cm/s2"),
-       f"column '{name}': expected cm/s2; the header says {unit}")
+       f"column '{name}': expected cm/s2; the header states {unit}")
       for unit, names in (("g", ("acc_g", "acc/g", "acc g", "acc - g", "acc=g", "a{g}", "a<g>")), ("cm/s", ("v cm/s",)),
                           ("m/s2", ("acc_m/s2", "acc_m_s2", "acc_mps2", "acc m/s/s")), ("mm", ("EW_mm",)))
       for name in names),
     *(("t.csv", table(names=(name, "a")), ("--time", name, "--time-unit", "ms", "--column", "x=a", "--unit", "g"),
-       f"column '{name}': expected ms; the header says {'min' if 'min' in name else 's'}")
+       f"column '{name}': expected ms; the header states {'min' if 'min' in name else 's'}")
       for name in ("t_s", "time_s", "Zeit/s", "t s", "time - min")),
     ("t.csv", table(), ("--time", "t"), "--unit: expected for a table"),
     ("t.csv", table(), ("--unit", "g"), "--column: expected for a table"),

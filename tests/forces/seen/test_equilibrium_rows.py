@@ -21,7 +21,7 @@ from known_blocks import (
 
 from blockshake.forces.seen.equilibrium_rows import equilibrium_rows
 from blockshake.forces.seen.point_rows import point_rows
-from blockshake.forces.seen.seen_test import see_test
+from blockshake.forces.seen.reconstructed_test import reconstruct_test
 from blockshake.forces.seen.wrench_histories import (
     edge_inward,
     force_at,
@@ -46,7 +46,7 @@ def turn(t, size=0.02, start=2.0, end=5.0):
 def rocked(quiet):
     """A block that turns about its edges on a table at rest, whatever makes it do so."""
     structure = stack(1)
-    return see_test("rocked", readings(structure, rocking(lambda t: 0.0, turn)), structure, quiet)
+    return reconstruct_test("rocked", readings(structure, rocking(lambda t: 0.0, turn)), structure, quiet)
 
 
 def test_rows_are_there_only_where_the_block_has_turned_and_calmly(rocked):
@@ -89,7 +89,7 @@ def test_normal_force_of_a_single_joint_is_weight_and_vertical_inertia(rocked):
 def test_normal_forces_in_a_loop_are_those_that_turned_joints_can_carry(quiet):
     """A bridge on the corners of two blocks that sway: its weight and its inertia alone share out its support."""
     structure, poses = portal(), swaying(turn)
-    seen = see_test("swayed", readings(structure, poses), structure, quiet)
+    seen = reconstruct_test("swayed", readings(structure, poses), structure, quiet)
     supports = [index for index, face in enumerate(seen.faces) if face.upper == 3]
     edge = seen.states.edge[..., 0]
     calm = np.flatnonzero((edge != 0).all(axis=1))
@@ -121,7 +121,7 @@ def test_a_loop_of_which_a_body_is_not_read_has_no_rows(quiet):
     lost = (read["time"] > 1.0) & (read["time"] < 3.0)
     of_block = read["marker"].str.startswith("block-1")
     read["marker_displacement"] = read["marker_displacement"].where(~(lost & of_block))
-    seen = see_test("lost", read, structure, quiet)
+    seen = reconstruct_test("lost", read, structure, quiet)
     assert np.isnan(seen.forces.force[seen.motion.time < 2.9, :, 2]).any()
     assert seen.rows.time.min() > 2.9
     slipping = equilibrium_rows(seen.frames, seen.states, seen.motion, seen.required, seen.free)
@@ -150,7 +150,10 @@ def test_rows_of_a_mass_centre_that_is_off_are_the_column_times_its_distance(qui
     structure = stack(1)
     true = structure.with_parameters({"bodies.block-1.mass_offset": [off, 0.0, 0.0]})
     read = readings(structure, rocking(lambda t: 0.0, turn))
-    supposed, shifted = see_test("a", read, structure, quiet), see_test("b", read, true, quiet)
+    supposed, shifted = (
+        reconstruct_test("a", read, structure, quiet),
+        reconstruct_test("b", read, true, quiet),
+    )
     assert (supposed.rows.instant == shifted.rows.instant).all()
     moment = [one.rows.along(_about_edge(one)) for one in (supposed, shifted)]
     difference = supposed.rows.value / moment[0] - shifted.rows.value / moment[1]
@@ -161,12 +164,12 @@ def test_rows_of_a_mass_centre_that_is_off_are_the_column_times_its_distance(qui
 def test_a_block_that_slides_by_its_friction_leaves_rows_of_nothing(quiet):
     structure = stack(1, friction=0.2)
     table = shaken(4.0, 1.0)
-    seen = see_test("slid", readings(structure, sliding(table, 0.2)), structure, quiet)
+    seen = reconstruct_test("slid", readings(structure, sliding(table, 0.2)), structure, quiet)
     assert len(seen.rows.value) > 20
     weight = structure.mass[1] * GRAVITY
     assert np.abs(seen.rows.value).max() < 0.02 * 0.2 * weight
     # a tenth less friction than the structure states: the column of friction times the difference
-    less = see_test("less", readings(structure, sliding(table, 0.18)), structure, quiet)
+    less = reconstruct_test("less", readings(structure, sliding(table, 0.18)), structure, quiet)
     column = less.rows.along(friction_against_slip(less, 0))
     found = (column @ less.rows.value) / (column @ column)
     assert found == pytest.approx(-0.02, rel=0.1)
@@ -182,7 +185,7 @@ def test_a_point_of_a_stack_that_turns_as_one_moves_with_its_height(quiet):
         return np.array([*lower, [lower[1, 0] + up[0], lower[1, 1] + up[1], angle]])
 
     read = readings(structure, poses)
-    whole = see_test("whole", read, structure, quiet)
+    whole = reconstruct_test("whole", read, structure, quiet)
     assert len(whole.rows.value) > 50
     point = point_rows(whole, "block-2", 0.5)
     assert point.unit.any()

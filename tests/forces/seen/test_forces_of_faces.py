@@ -6,7 +6,7 @@ from known_blocks import DURATION, GRAVITY, HEIGHT, accelerations, readings, roc
 from scipy.ndimage import gaussian_filter1d
 
 from blockshake.forces.motion import WIDTH as WIDTH_OF_KERNEL
-from blockshake.forces.seen.seen_test import see_test
+from blockshake.forces.seen.reconstructed_test import reconstruct_test
 
 INNER = slice(10, -10)
 
@@ -45,7 +45,7 @@ def tilted(t, size=0.02, start=2.0):
 
 def test_blocks_that_go_with_the_table_need_shear_and_lever_of_their_inertia(sensors):
     structure, table = stack(2), shaken(0.5)
-    seen = see_test("carried", readings(structure, carried(table, 3)), structure, sensors)
+    seen = reconstruct_test("carried", readings(structure, carried(table, 3)), structure, sensors)
     time = seen.motion.time[INNER]
     acceleration = smoothed(lambda t: accelerations(carried(table, 3), t)[0, 0], time)
     for place, above in enumerate((2, 1)):
@@ -61,7 +61,7 @@ def test_blocks_that_go_with_the_table_need_shear_and_lever_of_their_inertia(sen
 def test_forces_of_a_rocking_block_are_those_of_newton_and_euler(sensors):
     structure = stack(1)
     poses = rocking(shaken(0.0), tilted)
-    seen = see_test("rocking", readings(structure, poses), structure, sensors)
+    seen = reconstruct_test("rocking", readings(structure, poses), structure, sensors)
     mass, inertia = structure.mass[1], structure.inertia[1, 1, 1]
 
     def required(t):
@@ -85,20 +85,20 @@ def test_levers_of_a_block_whose_mass_is_off_its_centroid_lie_the_other_way_if_i
     name = structure.body_names[1]
     eccentric = structure.with_parameters({f"bodies.{name}.mass_offset": [offset, 0.0, 0.0]})
     test = readings(structure, rocking(shaken(0.0), tilted))
-    levers = [lever(see_test("tilted", test, one, sensors))[0] for one in (structure, eccentric)]
+    levers = [lever(reconstruct_test("tilted", test, one, sensors))[0] for one in (structure, eccentric)]
     assert np.nanmedian((levers[0] - levers[1])[INNER]) == pytest.approx(-offset, rel=0.01)
 
 
 def test_errors_are_as_large_as_they_are_said_to_be(sensors):
     """Chi-square of the levers over many draws of the noise."""
     structure, table = stack(2), shaken(0.5)
-    exact, _ = lever(see_test("exact", readings(structure, carried(table, 3)), structure, sensors))
+    exact, _ = lever(reconstruct_test("exact", readings(structure, carried(table, 3)), structure, sensors))
     squares = []
     for seed in range(6):
         noisy = readings(
             structure, carried(table, 3), sensors.marker_noise, sensors.accelerometer_noise, seed
         )
-        read, error = lever(see_test("noisy", noisy, structure, sensors))
+        read, error = lever(reconstruct_test("noisy", noisy, structure, sensors))
         squares.append(((read - exact) / error)[INNER] ** 2)
     assert np.nanmean(squares) == pytest.approx(1.0, abs=0.25)
 
@@ -117,7 +117,7 @@ def test_a_joint_that_closes_and_opens_to_the_same_side_bears_on_neither_edge_me
         noisy = readings(
             structure, rocking(lambda t: 0.0, turn), sensors.marker_noise, sensors.accelerometer_noise
         )
-        seen = see_test("kinks", noisy, structure, sensors)
+        seen = reconstruct_test("kinks", noisy, structure, sensors)
         near = np.searchsorted(seen.motion.time, kinks if closes else [2.5, 3.5, 4.5])
         assert (np.abs(seen.joints.rotation[near, 0]) > 3e-4).all()
         assert ((seen.joints.side[near, 0] == 0) == closes).all()

@@ -5,7 +5,7 @@ import pytest
 from known_blocks import HEIGHT, WIDTH, kicked, readings, rocking, shaken, stack
 
 from blockshake.forces.seen.impacts import find_impacts
-from blockshake.forces.seen.seen_test import see_test
+from blockshake.forces.seen.reconstructed_test import reconstruct_test
 
 NOISE, NOISE_ACC = 1e-4, 0.02
 
@@ -29,7 +29,7 @@ def impacts_of(sensors, shares, table=still, acceleration=still, seed=0, **kick)
         NOISE_ACC,
         seed,
     )
-    return find_impacts(see_test("kicked", read, structure, sensors))
+    return find_impacts(reconstruct_test("kicked", read, structure, sensors))
 
 
 @pytest.mark.parametrize("share", [0.6, 0.7, 0.85, 0.95])
@@ -72,7 +72,9 @@ def test_blocks_that_turn_as_one_are_one_body(sensors):
         up = HEIGHT * np.array([np.sin(angle), np.cos(angle) - 1.0])
         return np.array([*lower, [lower[1, 0] + up[0], lower[1, 1] + up[1], angle]])
 
-    found = find_impacts(see_test("two", readings(structure, poses, NOISE, NOISE_ACC), structure, sensors))
+    found = find_impacts(
+        reconstruct_test("two", readings(structure, poses, NOISE, NOISE_ACC), structure, sensors)
+    )
     assert len(found) >= 4
     assert {impact.blocks for impact in found} == {2}
     for impact in found:

@@ -6,9 +6,9 @@ from known_blocks import GRAVITY, kicked, readings, rocking, stack
 
 from blockshake.diagnosis.answer.explain import gather_evidence
 from blockshake.diagnosis.answer.limits import cannot_see
+from blockshake.diagnosis.evidence.angular_momentum_ratio import restitution_gain
 from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
-from blockshake.diagnosis.evidence.spin_kept import restitution_gain
-from blockshake.forces.seen.seen_test import see_test
+from blockshake.forces.seen.reconstructed_test import reconstruct_test
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +45,7 @@ def test_a_body_that_is_not_read_leaves_the_forces_above_it_and_no_row_that_need
 ):
     """The motion of the lower block decides the edge on which the upper one bears: without it no row is left."""
     whole, less = (
-        see_test(name, one, structure, sensors)
+        reconstruct_test(name, one, structure, sensors)
         for name, one in (("whole", read), ("less", without(read, "block-1")))
     )
     weight = GRAVITY * structure.mass[2]
@@ -60,7 +60,7 @@ def test_a_gap_of_a_body_below_leaves_the_forces_above(structure, read, sensors)
     gapped = read.copy(deep=True)
     own = [str(name).startswith("block-1") for name in read["marker"].values]
     gapped["marker_displacement"][dict(time=slice(300, 500), marker=own)] = np.nan
-    seen = see_test("gapped", gapped, structure, sensors)
+    seen = reconstruct_test("gapped", gapped, structure, sensors)
     inside = (seen.motion.time > 1.6) & (seen.motion.time < 2.4)
     assert np.isfinite(seen.forces.force[inside, 1]).all()
     assert np.isnan(seen.forces.force[inside, 0]).all()
@@ -70,7 +70,7 @@ def test_a_gap_of_a_body_below_leaves_the_forces_above(structure, read, sensors)
 @pytest.mark.filterwarnings("error::RuntimeWarning")
 @pytest.mark.parametrize("body", ["block-1", "block-2"])
 def test_nothing_is_said_of_what_is_not_read(structure, read, sensors, body):
-    seen = [see_test("less", without(read, body), structure, sensors)]
+    seen = [reconstruct_test("less", without(read, body), structure, sensors)]
     gathered = gather_evidence(seen)
     assert gathered is None or all(gathered.gain(key) < 8.0 for key in gathered.keys)
     assert all(one.gain <= 0.0 for one in explain_slab([slab_motion(one) for one in seen]).values())
@@ -81,7 +81,7 @@ def test_nothing_is_said_of_what_is_not_read(structure, read, sensors, body):
 def test_a_test_without_a_quiet_start_is_not_judged(structure, read, sensors):
     late = read.sel(time=slice(1.0, None), time_acc=slice(1.0, None))
     late = late.assign(marker_displacement=late["marker_displacement"] - late["marker_displacement"][0])
-    seen = see_test("late", late, structure, sensors)
+    seen = reconstruct_test("late", late, structure, sensors)
     assert not seen.still.any()
     assert not len(seen.rows.value)
     assert not seen.states.closed.any()
@@ -91,12 +91,12 @@ def test_a_test_without_a_quiet_start_is_not_judged(structure, read, sensors):
 
 
 def test_of_joints_that_are_read_the_one_that_rests_alone_is_said(structure, read, sensors):
-    (line,) = cannot_see([see_test(name, read, structure, sensors) for name in ("t1", "t2")])
+    (line,) = cannot_see([reconstruct_test(name, read, structure, sensors) for name in ("t1", "t2")])
     assert line.startswith("slab-block-1: turned, slipped and lifted in no test")
 
 
 def test_joints_that_never_move_are_said(structure, sensors):
     at_rest = readings(structure, lambda t: np.zeros((3, 3)), 1e-4, 0.02)
-    lines = cannot_see([see_test("t1", at_rest, structure, sensors)])
-    assert lines[0] == "t1 alone: a cause that acts once is not told from one that lasts"
+    lines = cannot_see([reconstruct_test("t1", at_rest, structure, sensors)])
+    assert lines[0] == "t1 alone: a cause that acts once is not distinguished from one that lasts"
     assert [line.split(":")[0] for line in lines[1:]] == ["slab-block-1", "block-1-block-2"]

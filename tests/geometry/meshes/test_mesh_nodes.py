@@ -69,7 +69,7 @@ def test_nodes_of_a_sphere_are_even_and_lie_on_it():
 
 
 def test_a_face_finer_meshed_gets_the_same_nodes_roughly():
-    """Spacing, not the mesh, says how many: a cube cut into 12 and into 12288 triangles."""
+    """Spacing, not the mesh, states how many: a cube cut into 12 and into 12288 triangles."""
     coarse = trimesh.creation.box([1.0, 1.0, 1.0])
     fine = coarse.subdivide().subdivide().subdivide().subdivide().subdivide()
     few, many = (

@@ -137,7 +137,7 @@ GOOD = {
     "other spellings": lambda test: _stated("accelerometer", "m/s^2")(_stated("time", "seconds")(test)),
     "whole milliseconds stored in seconds of float32": _timed("time", lambda t: t.astype(np.float32)),
     "a first reading with noise": _displaced(lambda x: x + 3.0 * NOISE),
-    # it has moved by then, and says so rightly
+    # it has moved by then, and states it rightly
     "a first half second that is lost": _set("marker_displacement", (slice(0, 500), 3), np.nan),
     "an inherited offset": _offset("initial_offset", 4e-3),
     "no accelerometers": lambda test: test.drop_dims("time_acc"),

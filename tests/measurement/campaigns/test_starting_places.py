@@ -7,8 +7,8 @@ from resting_stack import STRUCTURE, resting_stack, write_campaign
 from blockshake.errors import InputError
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
+from blockshake.measurement.campaigns.initial_poses import initial_pose_lines, initial_poses, placed
 from blockshake.measurement.campaigns.recorded_test import structure_at_start
-from blockshake.measurement.campaigns.starting_places import placed, standing, starting_lines
 from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.measurement.sensors.markers import marker_position
 
@@ -62,13 +62,13 @@ MEASURED = {
 def test_blocks_start_where_they_were_found(what, tmp_path):
     test = _read(tmp_path, _test(**MEASURED[what]))
     np.testing.assert_allclose(test["starting_place"], PLACES, atol=1e-9)
-    stands, wanted = standing(STRUCTURE, test), load_structure(STRUCTURE, placed(STRUCTURE, PLACES))
+    stands, wanted = initial_poses(STRUCTURE, test), load_structure(STRUCTURE, placed(STRUCTURE, PLACES))
     np.testing.assert_allclose(stands.position, wanted.position, atol=1e-9)
     np.testing.assert_allclose(stands.orientation, wanted.orientation, atol=1e-9)
     # what is varied in it later keeps its places
     again = stands.with_parameters({"materials.concrete.density": 2300.0})
     np.testing.assert_array_equal(again.position, stands.position)
-    (line,) = starting_lines(test)
+    (line,) = initial_pose_lines(test)
     assert "block-1 20.4 mm and 35 mrad" in line
     assert any(line in one for one in campaign_lines(tmp_path))
 
@@ -88,8 +88,8 @@ NOTHING = {
 def test_blocks_that_were_put_back_start_as_in_the_structure_file(what, tmp_path):
     test = _read(tmp_path, _test(**NOTHING[what]))
     assert "starting_place" not in test
-    assert standing(STRUCTURE, test) is STRUCTURE
-    assert starting_lines(test) == []
+    assert initial_poses(STRUCTURE, test) is STRUCTURE
+    assert initial_pose_lines(test) == []
 
 
 def test_the_survey_counts_beside_markers_that_are_mounted_elsewhere(tmp_path):

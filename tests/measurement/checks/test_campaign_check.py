@@ -242,7 +242,7 @@ def test_another_unit_or_axis_is_refused_in_one_line(what, tmp_path):
 
 
 def test_a_small_sine_is_no_weak_or_strong_table(tmp_path):
-    """Of 0.3 mm read with 0.1 mm the peak would be a third too large; the regression is not.
+    """0.3 mm read with 0.1 mm the peak would be a third too large; the regression is not.
 
     Its standard error is noise / (rms of the sine x root of the readings x markers) = 0.1 / (0.18 x 57) = 1 %.
     """

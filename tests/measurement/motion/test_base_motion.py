@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from blockshake.dynamics.load_motion import load_motion
-from blockshake.measurement.motion.base_motion import likeliest_density, smooth_readings, together
+from blockshake.measurement.motion.base_motion import most_probable_density, smooth_readings, together
 from blockshake.measurement.motion.kalman import DISPLACEMENT, OFFSET, VELOCITY
 from blockshake.measurement.sensors.accelerometers import FINE_RATE, RATE, low_pass
 
@@ -36,7 +36,7 @@ def _rms(values):
 def _smoothed(time, marker, time_acc=(), reading=(), noise=MARKER_NOISE):
     """Smoothed states at the marker's times, (n_times, 4), and their standard deviations."""
     readings = together(time, marker, noise, np.array(time_acc), np.array(reading), ACCELEROMETER_NOISE)
-    smoothed = smooth_readings(readings, likeliest_density(readings))
+    smoothed = smooth_readings(readings, most_probable_density(readings))
     there = np.searchsorted(readings.time, time - 1e-7)
     return smoothed.mean[there], np.sqrt(np.diagonal(smoothed.covariance[there], axis1=1, axis2=2))
 

@@ -8,7 +8,7 @@ def test_a_lone_wrong_reading_becomes_a_gap_and_no_other_does():
     base = base_motion()
     test = seen(moved_run(base, rocking=[0.0, bump(TIME, 2.0, 0.5, 0.01)]))
     own = [m.name for m in STRUCTURE.file.markers if m.body == "block-2"]
-    assert len(own) >= 3  # one of two cannot be told from the other
+    assert len(own) >= 3  # one of two cannot be distinguished from the other
     marker = own[0]
     wrong = test.copy(deep=True)
     wrong["marker_displacement"].loc[{"marker": marker}][300] += 2e-3

@@ -30,7 +30,7 @@ def run():
 
 def test_a_body_that_is_asked_for_alone_has_the_pose_that_it_has_among_all(run):
     test, driven = seen(run), STRUCTURE.driven
-    alone, among = (body_poses(test, STRUCTURE, 1e-4, asked) for asked in (driven, None))
+    alone, among = (body_poses(test, STRUCTURE, 1e-4, selected) for selected in (driven, None))
     for part in ("position", "rotation"):
         np.testing.assert_array_equal(getattr(alone, part)[:, driven], getattr(among, part)[:, driven])
         assert np.isnan(getattr(alone, part)[:, ~driven]).all()

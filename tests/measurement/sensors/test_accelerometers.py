@@ -59,7 +59,7 @@ def _lean(angle):
 
 
 def _gain(frequency):
-    """Of the low-pass run both ways: the square of the digital Butterworth's."""
+    """For the low-pass run both ways: the square of the digital Butterworth's."""
     b, a = butter(4, CUTOFF, fs=FINE_RATE)
     return np.abs(freqz(b, a, worN=[frequency], fs=FINE_RATE)[1][0]) ** 2
 

@@ -16,7 +16,7 @@ MARKER = STRUCTURE.file.markers[-1].name
 
 @pytest.fixture(scope="module")
 def run():
-    """Every body shifts and turns smoothly; one accelerometer channel beside."""
+    """Every body shifts and turns smoothly; one accelerometer channel with."""
     angle = 0.05 * np.sin(2.0 * np.pi * 1.5 * TIME) ** 2
     n_bodies = len(STRUCTURE.mass)
     position = np.tile(STRUCTURE.position, (len(TIME), 1, 1))

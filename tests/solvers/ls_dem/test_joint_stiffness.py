@@ -87,7 +87,7 @@ def test_so_have_two_blocks_anywhere_with_enough_in_common(make_structure):
         lower, upper = ("block", "cube")[count % 2], ("block", "cube")[count // 2 % 2]
         yaw = 0.0 if count % 8 < 4 else generator.uniform(0.0, np.pi)
         shift = generator.uniform(-1.3, 1.3, 2) * np.array(FLATS[lower]) / 2.0
-        # a fifth of a step beside a place of the raster: a lean of 1e-6 does not pass on to the next
+        # a fifth of a step next to a place of the raster: a lean of 1e-6 does not pass on to the next
         shift = (np.round(shift / RASTER) + 0.2) * RASTER
         if overlap(FLATS[lower], FLATS[upper], shift, yaw, cells=100)[0].size > 0:
             found.append(worst_miss(lower, upper, shift, yaw, make_structure))
@@ -121,7 +121,7 @@ RASTER = 0.0008  # m, for a block of 0.8 m
 
 
 def worst_miss(lower, upper, shift, yaw, make_structure):
-    """Of force and moments of two blocks, in shares of those of springs over the overlap; the overlap's area [m2]."""
+    """For force and moments of two blocks, in shares of those of springs over the overlap; the overlap's area [m2]."""
     structure = make_structure(
         [
             {"name": "lower", "shape": lower, "position": [0.0, 0.0, 0.0]},

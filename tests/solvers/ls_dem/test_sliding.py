@@ -32,7 +32,7 @@ def test_a_sliding_block_stops_after_v2_over_2_mu_g(make_structure, run_ls_dem):
 
 
 def test_spring_and_dashpot_together_stay_below_coulombs_limit(make_structure, run_ls_dem):
-    """|T| <= mu N with a dashpot beside the shear spring too, near and beyond the onset of slip."""
+    """|T| <= mu N with a dashpot next to the shear spring too, near and beyond the onset of slip."""
     time = np.arange(0.0, 0.4001, 0.001)
     motion = ground_motion("sine", time, {"x": 0.6 * G * np.sin(2 * np.pi * 5.0 * time)}, "acceleration")
     structure = make_structure([BODY], friction=MU, shapes={**FLAT_CUBE, **WIDE})

@@ -177,7 +177,7 @@ def test_unlike_masses_converge(ratio, scene):
 
 
 def test_a_body_that_is_crushed_is_told_and_not_hidden():
-    """Two driven walls close on a body: the law has no answer, and the residual says so within the iterations."""
+    """Two driven walls close on a body: the law has no answer, and the residual states it within the iterations."""
     rng = np.random.default_rng(3)
     bodies, inertia, inverse, contacts, v = random_problem(rng, 2, 2, 0.0)
     contacts.body_a[:], contacts.body_b[:] = 0, 1

@@ -92,7 +92,7 @@ def test_rigid_motions_have_no_strain_energy():
 
 @pytest.mark.parametrize("spacing", [0.2, 0.4, 0.5, 0.8, 10.0])
 def test_the_lattice_is_its_own_mirror_image(spacing):
-    """Five bricks along an edge have no plane in the middle: a lattice on one beside it would lean the block."""
+    """Five bricks along an edge have no plane in the middle: a lattice on one with it would lean the block."""
     size = (1.0, 0.6, 0.8)
     for planes, edge in zip(surface_lattice(box_mesh(size, 0.2), spacing).lines, size, strict=True):
         assert planes == pytest.approx(-planes[::-1], abs=1e-12)

@@ -8,7 +8,7 @@ from scipy.stats import binomtest
 
 from blockshake.study.calibration.answers import (
     LEVEL,
-    answer_questions,
+    answer_hypotheses,
     chance_of_test,
     distances,
     weighted_scores,
@@ -85,13 +85,13 @@ def test_the_truth_is_rarely_refused_and_the_parameter_that_acts_is_told_and_not
     for trial in range(n_trials):
         truth = generator.uniform()
         acts, idle, tests = _campaign(generator, truth)
-        answers = answer_questions({"acts": (acts, tests), "idle": (idle, tests)}, trial)
+        answers = answer_hypotheses({"acts": (acts, tests), "idle": (idle, tests)}, trial)
         found = answers["acts"]
         held += found.lower <= truth <= found.upper
-        told += found.told
+        told += found.constrained
         widths.append(found.upper - found.lower)
-        wrong += answers["idle"].told
-        if not answers["idle"].told:
+        wrong += answers["idle"].constrained
+        if not answers["idle"].constrained:
             assert (answers["idle"].lower, answers["idle"].upper) == (0.0, 1.0)
     assert binomtest(held, n_trials, LEVEL, alternative="less").pvalue > 0.01
     assert binomtest(wrong, n_trials, 1.0 - LEVEL, alternative="greater").pvalue > 0.01
@@ -108,13 +108,13 @@ def test_tests_that_do_not_depend_on_parameters_tell_of_none_of_them():
         first, second, tests = _campaign(generator, 0.5, strength=0.0)
         questions = {"first": (first, tests), "second": (second, tests)}
         questions |= {("second", place): (second, [test]) for place, test in enumerate(tests)}
-        wrong += any(one.told for one in answer_questions(questions, trial).values())
+        wrong += any(one.constrained for one in answer_hypotheses(questions, trial).values())
     assert binomtest(wrong, n_trials, 1.0 - LEVEL, alternative="greater").pvalue > 0.01
 
 
 def test_the_same_seed_gives_the_same_answer():
     acts, _, tests = _campaign(np.random.default_rng(7), 0.4)
-    one, other = (answer_questions({"acts": (acts, tests)}, 1)["acts"] for _ in range(2))
+    one, other = (answer_hypotheses({"acts": (acts, tests)}, 1)["acts"] for _ in range(2))
     assert_allclose(one.score, other.score, rtol=0.0, atol=0.0)
     assert (one.limit, one.chance) == (other.limit, other.chance)
 

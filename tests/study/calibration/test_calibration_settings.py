@@ -1,4 +1,4 @@
-"""Settings of the joint calibration: ranges, and the one line that says what is wrong in a configuration."""
+"""Settings of the joint calibration: ranges, and the one line that states what is wrong in a configuration."""
 
 import re
 

@@ -104,7 +104,7 @@ def test_the_friction_of_a_sliding_block_is_told_by_the_other_solver(truth, camp
 
 @pytest.mark.slow
 def test_contact_stiffness_is_told_by_a_noise_test_of_low_amplitude(campaign, one_block, tmp_path):
-    """The block stays closed: friction and restitution of impacts are not told, the stiffness is, by its frequency."""
+    """The block stays closed: friction and restitution of impacts are unknown, the stiffness is, by its frequency."""
     truth = 0.3
     wave = calibrate_stiffness(one_block(SLENDER))
     true = {f"ls_dem.{name}": truth * wave[name] for name in ("normal_stiffness", "shear_stiffness")}
@@ -151,7 +151,7 @@ def test_one_parameter_alone_is_calibrated_and_another_takes_its_value(campaign,
 
 
 def test_a_test_that_many_samples_do_not_end_is_not_asked(campaign, tmp_path, monkeypatch):
-    """Corners of the ranges without any sample would pass for values that are told."""
+    """Corners of the ranges without any sample would pass for values that are reported."""
     folder = campaign(SQUAT, {FRICTION: 0.4}, [_noise(seed, 4.0, 2.5, 4.0) for seed in range(2)], 2.5)
     solved = comparison.simulate_readings
 
@@ -166,7 +166,7 @@ def test_a_test_that_many_samples_do_not_end_is_not_asked(campaign, tmp_path, mo
 
 
 def test_a_run_that_does_not_converge_is_made_again_by_a_shorter_step(campaign, tmp_path, monkeypatch):
-    """Some samples' joints ask for a shorter step than their springs alone: their test would not be asked."""
+    """Some samples' joints ask for a shorter step than their springs alone: their test would not be requested."""
     folder = campaign(SQUAT, {FRICTION: 0.4}, [_noise(seed, 4.0, 2.5, 4.0) for seed in range(2)], 2.5)
     steps = []
 

@@ -47,7 +47,7 @@ def test_a_change_beyond_its_limits_is_told_and_another_is_not(content):
     )
     assert "by -2.0 [-3.0, -1.0]." in told
     assert "nothing beyond its limits" in silent
-    assert "Not told from no change: median of the drift, 95 % quantile of the drift" in silent
+    assert "Not distinguished from no change: median of the drift, 95 % quantile of the drift" in silent
 
 
 def test_tables_have_every_quantity_that_is_known_and_the_tests(content):

@@ -83,17 +83,17 @@ def test_a_narrow_block_has_its_own_limit(given, limit, case, make_mapping, tmp_
     np.testing.assert_array_equal(found["largest_drift"].sel(body=["cube", "narrow"]), expected)
 
 
-def rung(scale, passed, status="completed"):
+def level(scale, passed, status="completed"):
     return {"scale": scale, "passed": passed, "status": status, "reason": "", "drift_ratio": 0.1 * scale}
 
 
 def test_shares_count_what_is_known_at_each_level():
     scales = np.array([1.0, 2.0, 3.0])
     climbs = [
-        [rung(1.0, True), rung(2.0, False, "falling")],
-        [rung(1.0, True), rung(2.0, True), rung(3.0, True)],
-        [rung(1.0, True), rung(2.0, True), rung(3.0, False)],
-        [rung(1.0, True), rung(2.0, False, "not-converged")],
+        [level(1.0, True), level(2.0, False, "falling")],
+        [level(1.0, True), level(2.0, True), level(3.0, True)],
+        [level(1.0, True), level(2.0, True), level(3.0, False)],
+        [level(1.0, True), level(2.0, False, "not-converged")],
     ]
     climbed = gathered(np.arange(4), climbs, scales, xr.DataArray([0.4], {"body": ["cube"]}))
     np.testing.assert_array_equal(climbed["capacity_lower"], [1.0, 3.0, 2.0, 1.0])

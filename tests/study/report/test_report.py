@@ -240,7 +240,7 @@ def test_the_calibration_says_what_all_tests_tell_and_what_they_do_not(document)
     answers, tests = (block for block in section.blocks if block.kind == "table")
     row = dict(zip(answers.header, answers.rows[1], strict=True))
     assert row["NSCD rigid"] == "in none of its tests"
-    assert row["All"].startswith("not told (p ")
+    assert row["All"].startswith("unknown (p ")
     assert "2 of 4 are below 0.05" in tests.caption
     assert "4 runs ended for a numerical reason" in tests.caption
     assert len(tests.rows) == 4

@@ -252,7 +252,7 @@ def test_a_study_that_grew_says_first_why_it_stopped(content):
 
 
 def test_models_are_held_against_each_other_by_level(content):
-    """Where they differ at one level in every sample, and not at the other, the page says so."""
+    """Where they differ at one level in every sample, and not at the other, the page states it."""
     both = at_levels(content)
     samples = np.arange(20)
     for model, more in (("ls-dem", 0.1), ("nscd-rigid", 0.0)):
@@ -358,7 +358,7 @@ def test_a_case_in_which_most_samples_stand_is_shown(content):
 
 
 def test_record_and_level_explain_what_they_make(content):
-    """Of demands that are a product of a record's and a level's factor, all; of others little."""
+    """For demands that are a product of a record's and a level's factor, all; of others little."""
     samples = np.arange(32)
     levels = {int(sample): (3.0, 6.0)[sample % 2] for sample in samples}
     record = (samples // 2) % 8

@@ -158,7 +158,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say(measure):
         low, high = bootstrap_interval(measured, sample(seed), np.random.default_rng(seed), 200)
         inside.append((low <= truth) & (truth <= high))
     share = np.mean(inside)  # of 40 designs and nine inputs; a design's inputs are nearly independent
-    # 95 % asked for; the bootstrap may err by a few per cent at 50 samples, hardly ever below
+    # 95 % requested; the bootstrap may err by a few per cent at 50 samples, hardly ever below
     assert 0.92 <= share <= 0.99
 
 

@@ -140,7 +140,7 @@ def test_variables_that_share_an_index_are_named(shared, words):
 
 
 def test_how_many_samples_an_index_rests_on_stands_beside_it(fake):
-    """Of the made-up configuration 4 by rigid NSCD one of six samples collapsed and one failed."""
+    """The made-up configuration 4 by rigid NSCD one of six samples collapsed and one failed."""
     content = load_content(fake.study, fake.results)
     told = next(block.items for block in sensitivities(content).blocks if block.kind == "items")
     assert told[-1].startswith("Too few completed samples for any sensitivity: ")

@@ -1,4 +1,4 @@
-"""From evidences to an answer: none, a named cause, a set that cannot be told apart, a combination, or unknown."""
+"""From evidences to an answer: none, a named cause, a set that cannot be distinguished, a combination, or unknown."""
 
 from dataclasses import dataclass, replace
 
@@ -9,27 +9,27 @@ from blockshake.diagnosis.evidence.explanation import mean_evidence
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
 from blockshake.effects.registry import EFFECTS
 
-_BESIDE_SLAB = 10.0  # nats more of a cause in the joints of a slab that has one of its own
-_BESIDE = 5.0  # nats more of a second cause in the joints
-_BESIDE_SHARE = 0.1  # of the first one's gain, beside that
+_MORE_AFTER_SLAB = 10.0  # nats more of a cause in the joints of a slab that has one of its own
+_MORE_AFTER_FIRST = 5.0  # nats more of a second cause in the joints
+_SHARE_OF_FIRST = 0.1  # of the first one's gain, in addition
 _MOST_CAUSES = 3
 COARSENING = 0.05  # share of what it explains that the form of a cause may leave unexplained
 
 
 @dataclass(frozen=True)
-class Rival:
+class Alternative:
     """A cause with its best place."""
 
     cause: str
     place: str
     gain: float  # logarithm of the evidence over none, averaged over the places
     score: float  # the same with the prior, and of a free force the share that a form must explain
-    places: tuple  # of str; places that cannot be told apart
+    places: tuple  # of str; places that cannot be distinguished
 
 
 @dataclass(frozen=True)
 class Group:
-    """Causes that cannot be told apart in one part of the readings, the likeliest first."""
+    """Causes that cannot be distinguished in one part of the readings, the most probable first."""
 
     rivals: tuple  # of Rival
     # odds, gains: str to float; of the first over each cause, as a logarithm, coarsened; and of each over
@@ -40,7 +40,7 @@ class Group:
 
 
 def rank(evidence, closed=None, joined=(), known=()):
-    """`Rival` by falling score, from `Evidence` or None.
+    """`Alternative` by falling score, from `Evidence` or None.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def rank(evidence, closed=None, joined=(), known=()):
         By joint, the gain of every compliance from closed joints.
     joined : list of set of str
         Bodies that are one place, from `joined_bodies`.
-    known : sequence of Rival
+    known : sequence of Alternative
         Causes that act already: at the places of one of them its cause is no other one.
     """
     gains, taken = {}, {(one.cause, place) for one in known for place in one.places}
@@ -100,23 +100,23 @@ def _rival(cause, places, evidence, joined):
         if place.partition("@")[0] in group and not bodies.isdisjoint(group)
     }
     near = tuple(place for place in ordered if place in near)
-    return Rival(cause, best, gain, score_of(cause, gain), near)
+    return Alternative(cause, best, gain, score_of(cause, gain), near)
 
 
 def find_causes(ranked, needed):
-    """`Group` by falling strength, each found beside the first causes of those before it: rank, compare, add, go on.
+    """`Group` by falling strength, each found given the first causes of those before it: rank, compare, add, go on.
 
     Parameters
     ----------
     ranked : callable
-        Of the first `Rival` of every group found so far: all rivals beside them, by falling score.
+        For the first `Alternative` of every group found so far: all rivals with them, by falling score.
     needed : callable
-        Of the name of a cause and these: the gain over none from which the cause is no chance.
+        For the name of a cause and these: the Log Bayes factor over none from which the cause is no chance.
 
     Notes
     -----
     A cause that ranks before the first one that is no chance, and whose odds over none would do, is an error that this
-    structure's own runs show: it becomes a group that is not asserted, and others are compared beside it.
+    structure's own runs show: it becomes a group that is not asserted, and others are compared with it.
     """
     groups = []
     while len(groups) < _MOST_CAUSES:
@@ -133,25 +133,26 @@ def find_causes(ranked, needed):
 
 
 def group_of(first, ranked):
-    """`Group` of a cause and all that cannot be told from it."""
+    """`Group` of a cause and all that cannot be distinguished from it."""
 
     odds = {rival.cause: coarsened(first.score - rival.score, first.score) for rival in ranked}
     near = tuple(rival for rival in ranked if odds[rival.cause] < ODDS)
     return Group(near, odds, {rival.cause: rival.gain for rival in ranked})
 
 
-def needed_beside(slab, known=()):
+def further_need(slab, known=()):
     """Gain that is needed beyond the usual one.
 
-    ``slab`` says whether the slab's own motion has a cause, and ``known`` are `Rival` found in the joints before.
+    ``slab`` states whether the slab's own motion has a cause, and ``known`` are `Alternative` found in the joints
+    before.
     """
-    more = _BESIDE_SLAB if slab else 0.0
-    return more + _BESIDE + share_of(known) if known else more
+    more = _MORE_AFTER_SLAB if slab else 0.0
+    return more + _MORE_AFTER_FIRST + share_of(known) if known else more
 
 
 def share_of(known):
-    """Share of what the `Rival` found before gain, that one more needs besides: errors of their form."""
-    return _BESIDE_SHARE * sum(one.gain for one in known)
+    """Share of what the `Alternative` found before gain, that one more needs besides: errors of their form."""
+    return _SHARE_OF_FIRST * sum(one.gain for one in known)
 
 
 def slab_groups(explained, thresholds):
@@ -162,7 +163,7 @@ def slab_groups(explained, thresholds):
     groups = []
     for readings, moves in (("rotation of the slab", "turns"), ("vertical motion of the slab", "lifts")):
         rivals = [
-            Rival(name, "all", one.gain, one.gain, ("all",))
+            Alternative(name, "all", one.gain, one.gain, ("all",))
             for name, one in explained.items()
             if getattr(EFFECTS[name], moves)
         ]

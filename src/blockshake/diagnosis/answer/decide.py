@@ -8,7 +8,7 @@ import xarray as xr
 from blockshake.diagnosis.answer.answer import (
     coarsened,
     find_causes,
-    needed_beside,
+    further_need,
     rank,
     slab_groups,
     soft_gains,
@@ -22,10 +22,10 @@ from blockshake.diagnosis.answer.next_test import next_tests
 from blockshake.diagnosis.answer.places import EVERYWHERE, joined_bodies, place_of
 from blockshake.diagnosis.answer.size import members_of, size_of
 from blockshake.diagnosis.answer.thresholds import RATE, Thresholds, by_odds
+from blockshake.diagnosis.evidence.angular_momentum_ratio import restitution_gain
 from blockshake.diagnosis.evidence.closed_joints import closed_joints
 from blockshake.diagnosis.evidence.explanation import Fit, mean_evidence
 from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
-from blockshake.diagnosis.evidence.spin_kept import restitution_gain
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.impact_restitution import EFFECT as RESTITUTION
 from blockshake.effects.joint_compliance import COMPLIANCES
@@ -45,11 +45,11 @@ class Decided(NamedTuple):
 
 
 def decide(seen, without=(), unseen=(), thresholds=_BY_ODDS):
-    """`Decided`: what the tests speak for.
+    """`Decided`: what the tests support.
 
     Parameters
     ----------
-    seen : list of SeenTest
+    seen : list of ReconstructedTest
         Open tests, at least one.
     without : sequence of str
         Effects that are left out, as if nobody had thought of them.
@@ -72,9 +72,9 @@ def decide(seen, without=(), unseen=(), thresholds=_BY_ODDS):
     ]
     acting = [part.model_copy(update={"readings": _JOINTS[min(n, 1)]}) for n, part in enumerate(acting)]
     explained = [one for one, group in zip(explained, groups, strict=False) if group.asserted]
-    evidence, beside = stages[0], stages[1] if stages[1:] else None
+    evidence, given_first = stages[0], stages[1] if stages[1:] else None
     first = groups[0].rivals[0] if groups and groups[0].asserted else None
-    paths = histories(evidence, beside, first, seen[0])
+    paths = histories(evidence, given_first, first, seen[0])
     if first:
         acting[0] = _with_last_sizes(acting[0], paths)
     for readings, group in of_slab:
@@ -143,9 +143,9 @@ def _title(cause):
 
 
 def _in_joints(seen, evidence, closed, slab, thresholds):
-    """Lists of `Evidence`, each beside the first cause of one group more, and of `Group`; see `find_causes`.
+    """Lists of `Evidence`, each given the first cause of one group more, and of `Group`; see `find_causes`.
 
-    ``closed`` is as of `rank`, and ``slab`` says whether the slab's own motion has a cause.
+    ``closed`` is as of `rank`, and ``slab`` states whether the slab's own motion has a cause.
     """
     stages, joined = [evidence], joined_bodies(seen)
 
@@ -155,17 +155,17 @@ def _in_joints(seen, evidence, closed, slab, thresholds):
         key, last = (known[-1].cause, known[-1].place), stages[-1]
         if last is None or key not in last.keys:  # it shows in closed joints alone
             return []
-        stages.append(last.heard(key).beside([last.best(key)]))
+        stages.append(last.plausible(key).given([last.best(key)]))
         return rank(stages[-1], {}, joined, known)
 
     def needed(cause, known):
-        return thresholds.of(cause) + needed_beside(slab, known)
+        return thresholds.of(cause) + further_need(slab, known)
 
     return stages, find_causes(ranked, needed)
 
 
 def _together(stages, groups):
-    """`Evidence` of the causes of every group beside the first ones of all others, and the `Explanation` of its first.
+    """`Evidence` of the causes of every group given the first ones of all others, and the `Explanation` of its first.
 
     So sizes are those of the joint posterior. A group whose cause shows in closed joints alone has no explanation.
     """
@@ -176,7 +176,7 @@ def _together(stages, groups):
         if len(found) == len(groups):
             causes = {rival.cause for rival in group.rivals}
             others = [one for other, one in enumerate(found) if other != number]
-            fitted[number] = stages[0].heard(keys[0]).beside(others, causes)
+            fitted[number] = stages[0].plausible(keys[0]).given(others, causes)
             found[number] = fitted[number].best(keys[number])
     return fitted, found
 
@@ -189,7 +189,7 @@ def _with_last_sizes(part, paths):
 
 
 def _of_impacts(impacts):
-    """`Part` of impacts that lose less than any sound model; by how much the solvers' restitution is not told."""
+    """`Part` of impacts that lose less than any undamaged model; by how much the solvers' restitution is unknown."""
     name, gain = RESTITUTION.name, impacts.gain
     cause = Cause(name=name, place={}, places=(EVERYWHERE,), gain=gain, odds=0.0, parameters={}, members=())
     return Part(readings="impacts", causes=(cause,), odds={name: 0.0}, gains={name: gain})
@@ -202,7 +202,7 @@ def chance(part):
 
 
 def kind_of(parts):
-    """Kind of the answer; an outside form alone is unknown, in a part of its own beside an effect a combination."""
+    """Kind of the answer; an outside form alone is unknown, in a part of its own next to an effect a combination."""
     if not parts:
         return "none"
     effects = {cause.name for part in parts for cause in part.effects}

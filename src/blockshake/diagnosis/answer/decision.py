@@ -38,18 +38,18 @@ class Measurement(Strict):
 
 
 class Cause(Strict):
-    """A cause that the readings speak for, at its likeliest place."""
+    """A cause that the readings support, at its most probable place."""
 
     name: str  # effect of the registry, or form from outside
-    # ``{"joint": [lower, upper]}``, ``{"body": name}`` and what else says where, empty of a cause that is
+    # ``{"joint": [lower, upper]}``, ``{"body": name}`` and what else states where, empty of a cause that is
     # everywhere
     place: dict[str, JsonValue]
-    places: tuple[str, ...]  # in words, all that cannot be told from it
+    places: tuple[str, ...]  # in words, all that cannot be distinguished from it
     gain: Finite  # logarithm of its evidence over that of none
-    odds: Finite  # of the likeliest cause over this one, as a logarithm, coarsened
+    odds: Finite  # of the most probable cause over this one, as a logarithm, coarsened
     parameters: dict[str, Estimate]
     members: tuple[dict[str, Finite], ...]  # parameters drawn from their posterior, in a fixed random order
-    # the likeliest variant: parameters that are no amplitudes; of a form from outside starts, sides and tests
+    # the most probable variant: parameters that are no amplitudes; of a form from outside starts, sides and tests
     when: dict[str, JsonValue] = Field(default_factory=dict)
     # of the variant, at their best: what its rows on further tests are multiplied with
     amplitudes: tuple[Finite, ...] = ()
@@ -66,13 +66,14 @@ class Cause(Strict):
 
 
 class Part(Strict):
-    """One part of the readings that something acts on: the causes that cannot be told apart, the likeliest first."""
+    """One part of the readings that something acts on: the causes that cannot be distinguished, the most probable
+    first."""
 
     # ``joints``, ``joints, beside the first``, ``impacts``, ``free flight``, ``rotation of the slab`` or
     # ``vertical motion of the slab``
     readings: str
     causes: tuple[Cause, ...]
-    odds: dict[str, Finite]  # of the likeliest over every rival, as a logarithm, coarsened
+    odds: dict[str, Finite]  # of the most probable over every rival, as a logarithm, coarsened
     gains: dict[str, Finite]  # logarithm of the evidence over none, by rival
     # that would split the causes, by falling share; empty of a single one
     next_tests: tuple[Measurement, ...] = ()
@@ -89,7 +90,7 @@ class Part(Strict):
 
 
 class History(Strict):
-    """A size by test, in the order of the campaign: of a cause, or of sound joints."""
+    """A size by test, in the order of the campaign: of a cause, or of undamaged joints."""
 
     quantity: str  # name of the cause, or ``edges``, ``middle`` or ``friction``
     parameter: str  # name of the size
@@ -136,11 +137,11 @@ class Decision(Strict):
 
     @property
     def causes(self):
-        """Effects of the registry that are not excluded, the likeliest `Cause` of each name."""
-        likeliest = {}
+        """Effects of the registry that are not excluded, the most probable `Cause` of each name."""
+        most_probable = {}
         for one in (one for part in self.parts for one in part.effects):
-            likeliest.setdefault(one.name, one)
-        return tuple(likeliest.values())
+            most_probable.setdefault(one.name, one)
+        return tuple(most_probable.values())
 
     @property
     def forms(self):
@@ -149,7 +150,7 @@ class Decision(Strict):
 
     @property
     def extending(self):
-        """The likeliest cause of every part: together they extend the model."""
+        """The most probable cause of every part: together they extend the model."""
         return tuple(part.causes[0] for part in self.parts)
 
 

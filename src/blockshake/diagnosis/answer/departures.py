@@ -16,17 +16,18 @@ def departures(seen, evidence, explained):
 
     Parameters
     ----------
-    seen : list of SeenTest
+    seen : list of ReconstructedTest
     evidence : Evidence or None
     explained : list of Explanation
-        Of the causes in the answer, a second one beside the first.
+        For the causes in the answer, a second one given the first.
 
     Returns
     -------
     xarray.Dataset
         Along ``instant``, of all tests one after the other: ``test`` and ``time`` [s]; ``measured``, ``deviation`` and
         ``explained(instant, body)`` [N]: the force along x at the mass centre that makes the instant's rows less what
-        sound blocks make, by least squares; its standard deviation by the sensors; that of the causes at their best.
+        undamaged blocks make, by least squares; its standard deviation by the sensors; that of the causes at their
+        best.
     """
     names = [seen[0].structure.body_names[body] for body in seen[0].free]
     parts = []
@@ -92,18 +93,19 @@ def slab_departures(seen, slabs, explained, parts):
 
     Parameters
     ----------
-    seen : list of SeenTest
+    seen : list of ReconstructedTest
     slabs : list of SlabMotion
     explained : dict of str to Explanation
         From `explain_slab`.
     parts : sequence of Part
-        Of the decision.
+        The decision.
 
     Returns
     -------
     xarray.Dataset
         Along ``reading``, of all tests one after the other: ``slab_test`` and ``slab_time`` [s]; ``turn`` [rad] and
-        ``lift`` [m], from rest; ``turn_explained`` and ``lift_explained``, those of the likeliest cause at its best.
+        ``lift`` [m], from rest; ``turn_explained`` and ``lift_explained``, those of the most probable cause at its
+        best.
     """
     found = {}
     for name, (readings, unit) in _MOVES.items():

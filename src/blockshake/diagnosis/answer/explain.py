@@ -1,4 +1,4 @@
-"""All causes beside every likelihood of the rows, and what each gains over none."""
+"""All causes under every noise model of the rows, and the log Bayes factor of each over none."""
 
 from dataclasses import dataclass
 
@@ -28,7 +28,7 @@ from blockshake.effects.stopper_contact import EFFECT as STOPPER_CONTACT
 from blockshake.forces.seen.point_rows import point_rows
 
 NOISES = (0.75, 1.0, 1.3)  # standard deviation of the sensors over the stated one
-_UNHEARD = 20.0  # nats: a likelihood that says so much less for the first cause adds nothing
+_IMPLAUSIBLE = 20.0  # nats below the best, from which on a noise model is dropped
 _LOOKED_AT = 4  # causes
 _FIRST_LOOK = (1.0,), ((4.0, 0.0),)
 EVERY = (*EFFECTS, *FORMS)
@@ -37,7 +37,7 @@ DISCREPANCIES = ((1.0, 0.0), (4.0, -3.0), (16.0, -10.0))  # multiple, logarithm 
 
 @dataclass(frozen=True)
 class Explained:
-    """Explanations of the rows beside one likelihood, by cause and place."""
+    """Explanations of the rows under one noise model, by cause and place."""
 
     likelihood: object
     by_key: dict
@@ -76,10 +76,10 @@ def all_tried(tests, without):
     return Tried(tests, force_points(tests), variants)
 
 
-def heard(tried):
-    """Likelihoods that matter to any of the best causes of a first look: within 20 nats of the loudest beside it.
+def plausible(tried):
+    """Noise models within 20 nats of the best one for any leading cause of a first look.
 
-    Without a cause beside it, a large force that nobody modelled speaks for the widest errors alone.
+    Without a cause, a large force that nobody modelled would select the widest errors alone.
     """
     (first,) = likelihoods(tried.tests, *_FIRST_LOOK)
     best = {}
@@ -88,8 +88,8 @@ def heard(tried):
             best[explanation.cause] = explanation
     among, kept = likelihoods(tried.tests), set()
     for cause in sorted(best.values(), key=lambda explanation: -explanation.gain)[:_LOOKED_AT]:
-        logs = np.array([beside(likelihood, tried.tests, cause).log_evidence for likelihood in among])
-        kept |= set(np.flatnonzero(logs > logs.max() - _UNHEARD))
+        logs = np.array([given(likelihood, tried.tests, cause).log_evidence for likelihood in among])
+        kept |= set(np.flatnonzero(logs > logs.max() - _IMPLAUSIBLE))
     return [among[index] for index in sorted(kept)]
 
 
@@ -127,7 +127,7 @@ def _from_outside(likelihood, tests, points):
 
 @dataclass(frozen=True)
 class Evidence:
-    """Explanations of all rows beside several likelihoods."""
+    """Explanations of all rows under several noise models."""
 
     tried: Tried
     explained: list  # of Explained; by likelihood
@@ -139,7 +139,7 @@ class Evidence:
 
     @property
     def usual(self):
-        """The `Likelihood` that speaks loudest without any cause."""
+        """The noise model (`Likelihood`) with the largest evidence when no cause acts."""
         return max((one.likelihood for one in self.explained), key=lambda one: one.log_evidence)
 
     def gain(self, key):
@@ -151,15 +151,15 @@ class Evidence:
         return self._log_sum([explained.by_key[key].gains for explained in self.explained])
 
     def best(self, key):
-        """Explanation by a cause at a place beside the likelihood that speaks loudest for it."""
-        return self.loudest(key).by_key[key]
+        """Explanation by a cause at a place, under its most probable noise model."""
+        return self.most_probable(key).by_key[key]
 
-    def loudest(self, key):
-        """`Explained` beside the likelihood that speaks loudest for a cause at a place."""
-        return self.explained[int(np.argmax(self._speaks(key)))]
+    def most_probable(self, key):
+        """`Explained` under the most probable noise model of a cause at a place."""
+        return self.explained[int(np.argmax(self._log_evidence(key)))]
 
     def fits(self, cause, places):
-        """All `Fit` of a cause at places that cannot be told apart, with the logarithms of their weights.
+        """All `Fit` of a cause at places that cannot be distinguished, with the logarithms of their weights.
 
         Returns
         -------
@@ -184,7 +184,7 @@ class Evidence:
         best ones of the other place, nuisances free. More is an error of the model, which one of the columns takes up.
         """
         first, *others = (self.gain((cause, place)) for place in places)
-        explained = self.loudest((cause, places[0]))
+        explained = self.most_probable((cause, places[0]))
         made, found = [rows[:, None] for rows in explained.by_key[cause, places[0]].rows], [0.0]
         for place, gain in zip(places[1:], others, strict=True):
             odds = coarsened(first - gain, first)
@@ -208,29 +208,29 @@ class Evidence:
         gains = np.array(gains)
         return logsumexp(gains + logs.reshape(-1, *[1] * (gains.ndim - 1)), axis=0) - logsumexp(logs)
 
-    def heard(self, key):
-        """`Evidence` of the likelihoods that matter beside a cause at a place."""
-        speaks = self._speaks(key)
-        kept = np.flatnonzero(speaks > speaks.max() - _UNHEARD)
+    def plausible(self, key):
+        """`Evidence` of the noise models that are plausible given a cause at a place."""
+        log_evidence = self._log_evidence(key)
+        kept = np.flatnonzero(log_evidence > log_evidence.max() - _IMPLAUSIBLE)
         return Evidence(self.tried, [self.explained[index] for index in kept])
 
-    def _speaks(self, key):
+    def _log_evidence(self, key):
         return np.array([one.by_key[key].gain + one.likelihood.log_evidence for one in self.explained])
 
-    def beside(self, found, causes=EVERY):
-        """`Evidence` of causes beside some `Explanation`, whose columns are nuisances now."""
+    def given(self, found, causes=EVERY):
+        """`Evidence` of causes given some `Explanation`, whose columns are nuisances now."""
         explained = []
         for likelihood in (one.likelihood for one in self.explained):
             for cause in found:
-                likelihood = beside(likelihood, self.tests, cause)
+                likelihood = given(likelihood, self.tests, cause)
             explained.append(explain(likelihood, self.tried, causes))
         return Evidence(self.tried, explained)
 
 
-def beside(likelihood, tests, cause):
+def given(likelihood, tests, cause):
     """A likelihood with the best fit of an `Explanation` among its nuisances, and the error of its form."""
     errors = [form_error(test.rows.time, rows) for test, rows in zip(tests, cause.rows, strict=True)]
-    return likelihood.beside(cause.best.columns, cause.best.scales, errors)
+    return likelihood.given(cause.best.columns, cause.best.scales, errors)
 
 
 def gather_evidence(seen, without=()):
@@ -239,7 +239,7 @@ def gather_evidence(seen, without=()):
     if not tests:
         return None
     tried = all_tried(tests, without)
-    return Evidence(tried, [explain(likelihood, tried) for likelihood in heard(tried)])
+    return Evidence(tried, [explain(likelihood, tried) for likelihood in plausible(tried)])
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.special import logsumexp
 
-from blockshake.diagnosis.answer.answer import needed_beside
+from blockshake.diagnosis.answer.answer import further_need
 from blockshake.diagnosis.answer.decision import Estimate, History
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_of
 from blockshake.diagnosis.answer.size import FORM, NINE_TENTHS, read_sizes, units_of
@@ -13,23 +13,24 @@ from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS
 
 EDGES, MIDDLE, FRICTION = "edges", "middle", "friction"
-# of sound joints: name and unit of the size, and the standard deviation of its prior (of friction: of the coefficient)
-_SOUND = {EDGES: ("inset", "m", 0.05), MIDDLE: ("shift", "m", 0.02), FRICTION: ("change", "1", 0.3)}
+# of undamaged joints: name and unit of the size, and the standard deviation of its prior (of friction: of the
+# coefficient)
+_UNDAMAGED = {EDGES: ("inset", "m", 0.05), MIDDLE: ("shift", "m", 0.02), FRICTION: ("change", "1", 0.3)}
 _OF_EDGES = ("reduced-bearing", "changed-edge")  # causes whose own path is that of the edges
 _STEPS = (0.1, 0.3, 1.0)  # of the prior's deviation, from test to test: of a walk, since damage stays
 _SCATTER = 0.02  # of it, from test to test without damage: blocks are set up anew
 
 
-def histories(evidence, beside, first, seen):
-    """Sizes by test of the first cause, and of the edges, the middle and the friction of sound joints.
+def histories(evidence, given_first, first, seen):
+    """Sizes by test of the first cause, and of the edges, the middle and the friction of undamaged joints.
 
     Parameters
     ----------
-    evidence, beside : Evidence or None
+    evidence, given_first : Evidence or None
         Without any cause, and with the first cause in the joints among the nuisances.
-    first : Rival or None
+    first : Alternative or None
         That cause.
-    seen : SeenTest
+    seen : ReconstructedTest
         Any test.
 
     Returns
@@ -39,15 +40,15 @@ def histories(evidence, beside, first, seen):
     """
     if evidence is None:
         return ()
-    more = needed_beside(False, [first]) if first and (first.cause, first.place) in evidence.keys else 0.0
+    more = further_need(False, [first]) if first and (first.cause, first.place) in evidence.keys else 0.0
     own = _own(evidence, first, seen) if more else None
     of_edges = own is not None and first.cause in _OF_EDGES
-    others = (quantity for quantity in _SOUND if not (of_edges and quantity == EDGES))
-    sound = [_of_sound_joints(beside or evidence, quantity, more) for quantity in others]
-    if beside:  # a walk that alone explains more than the cause does takes the cause's place
-        alone = {quantity: _of_sound_joints(evidence, quantity, 0.0, first) for quantity in _SOUND}
-        sound = [alone[one.quantity] or one for one in sound if one]
-    return tuple(one for one in (own, *sound) if one)
+    others = (quantity for quantity in _UNDAMAGED if not (of_edges and quantity == EDGES))
+    undamaged = [_of_undamaged_joints(given_first or evidence, quantity, more) for quantity in others]
+    if given_first:  # a walk that alone explains more than the cause does takes the cause's place
+        alone = {quantity: _of_undamaged_joints(evidence, quantity, 0.0, first) for quantity in _UNDAMAGED}
+        undamaged = [alone[one.quantity] or one for one in undamaged if one]
+    return tuple(one for one in (own, *undamaged) if one)
 
 
 def of_last_test(cause, history):
@@ -90,12 +91,12 @@ def _own(evidence, first, seen):
     return found and _history(first.cause, name, place, unit, found, needed, read)
 
 
-def _of_sound_joints(evidence, quantity, more, rival=None):
-    """`History` of a size that sound joints have too, where it changes most; its gain is averaged over the places.
+def _of_undamaged_joints(evidence, quantity, more, rival=None):
+    """`History` of a size that undamaged joints have too, where it changes most; its gain is averaged over the places.
 
-    With a `Rival` it is None but where the size changes and explains more than the rival.
+    With a `Alternative` it is None but where the size changes and explains more than the rival.
     """
-    name, unit, scale = _SOUND[quantity]
+    name, unit, scale = _UNDAMAGED[quantity]
     by_place = _columns(evidence.tests, quantity)
     found = {place: _weighed(evidence, columns, scale) for place, columns in by_place.items()}
     found = {place: one for place, one in found.items() if one}

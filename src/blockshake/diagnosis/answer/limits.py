@@ -54,15 +54,15 @@ def limits_of(evidence, slabs, closed, thresholds, without=()):
                 EVERYWHERE: _lifted(name, [slab for slab in slabs if len(slab.at)], thresholds.of(name))
             }
     if evidence is not None:
-        loudest, tried = evidence.usual, {}
+        most_probable, tried = evidence.usual, {}
         for (name, place), variants in evidence.tried.variants.items():
             tried.setdefault(name, {})[place] = variants
         for name, by_place in tried.items():
             needed = thresholds.of(name)
             if name == JOINT_COMPLIANCE.name:
-                limits[name] = _soft(loudest, by_place, needed, closed)
+                limits[name] = _soft(most_probable, by_place, needed, closed)
             else:
-                limits[name] = _by_place(name, loudest, by_place, needed)
+                limits[name] = _by_place(name, most_probable, by_place, needed)
     return {
         name: {
             place: from_null(name, size)
@@ -86,7 +86,7 @@ def from_null(name, distance):
 
 
 def usual_column(name, variants, likelihood):
-    """Whitened rows, (n_rows,), of the variant whose parameters beside the size are nearest to their usual values.
+    """Whitened rows, (n_rows,), of the variant whose parameters other than the size are nearest to their usual values.
 
     Of several, such as an oscillator of any damping, the one of which the likelihood tells least. With them one over
     the variance of the amplitude, nuisances free.
@@ -130,7 +130,7 @@ def _by_place(name, likelihood, by_place, needed):
 
 
 def _soft(likelihood, by_place, needed, closed):
-    """Of a soft layer, whose rows have no amplitude: the smallest compliance that closed and turned joints show."""
+    """For a soft layer, whose rows have no amplitude: the smallest compliance that closed and turned joints show."""
     places, found = {*by_place, *closed}, {}
     for place in sorted(places):
         for number, compliance in enumerate(COMPLIANCES):
@@ -151,7 +151,7 @@ def _soft(likelihood, by_place, needed, closed):
 
 
 def _lifted(name, slabs, needed):
-    """Of a vertical motion of the slab in proportion to the horizontal one: the smallest that is tried and seen."""
+    """For a vertical motion of the slab in proportion to the horizontal one: the smallest that is tried and seen."""
     deviation = float(np.sqrt(explain_lift(EFFECTS[name], slabs).best.covariance[0, 0]))
     for size in largest(name) * _LIFTS:
         gain = explain_lift(EFFECTS[name], [replace(slab, lift=size * slab.travel) for slab in slabs]).gain
@@ -188,7 +188,9 @@ def cannot_see(seen_tests):
         return lines
     lines += [line for body in range(len(resting[0].structure.mass)) for line in _of_body(resting, body)]
     if len(resting) == 1:
-        lines.append(f"{resting[0].name} alone: a cause that acts once is not told from one that lasts")
+        lines.append(
+            f"{resting[0].name} alone: a cause that acts once is not distinguished from one that lasts"
+        )
     if not resting[0].tree:
         lines.append("bodies that stand on several joints: the force of each joint is known in part")
     return [*lines, *_of_joints(resting)]

@@ -16,7 +16,7 @@ from blockshake.diagnosis.answer.thresholds import ODDS
 from blockshake.diagnosis.outside.registry import FORMS
 
 _LEAST = 0.05  # share of split cases, below which a measurement is no advice
-_MOST = 6  # measurements that are told
+_MOST = 6  # measurements that are reported
 _SIGMAS = 3.29  # in an interval of 90 %
 REPEAT = "shake"
 
@@ -27,7 +27,7 @@ def next_tests(causes, seen, evidence):
     Parameters
     ----------
     causes : sequence of Cause
-    seen : list of SeenTest
+    seen : list of ReconstructedTest
     evidence : Evidence or None
         In which the causes stand.
 
@@ -134,13 +134,13 @@ def _further_rows(causes, evidence, number):
     """By true cause and rival: the square of the rows of a test made again that the rival leaves, and the gain more.
 
     Amplitudes and nuisances of the rival are those that fit the true cause's rows of all tests. A cause that acts once
-    is not there again; of one that shows in closed joints alone nothing is told.
+    is not there again; of one that shows in closed joints alone nothing is known.
     """
     keys = [(cause.name, cause.places[0]) for cause in causes]
     known = [number for number, key in enumerate(keys) if key in evidence.keys]
     if not known:
         return {}
-    likelihood = evidence.loudest(keys[known[0]]).likelihood
+    likelihood = evidence.most_probable(keys[known[0]]).likelihood
     again = slice(likelihood.ends[number], likelihood.ends[number + 1])
     fits = {one: evidence.best(keys[one]).best for one in known}
     columns = {one: likelihood.whiten(fit.columns) for one, fit in fits.items()}

@@ -22,7 +22,8 @@ def members_of(name, place, fits, logs):
 
 
 def size_of(name, place, here, alike):
-    """Parameters of a cause, `Estimate` by name: at one place, in intervals that hold for all that are not told apart.
+    """Parameters of a cause, `Estimate` by name: at one place, in intervals that hold for all that are not
+    distinguished.
 
     Parameters
     ----------

@@ -14,9 +14,9 @@ _MASS = 0.04  # of a block's: the scatter of densities, Zhou et al. (2023), Tabl
 _ANGLE = 1e-3  # rad, of an inclinometer as a joint opens
 _FORCE = 0.01  # of a jack's force, by its load cell
 _LAYER = 5e-11  # m3/N, of elastic blocks and of the rotation of a closed joint
-# of sound blocks, as among the nuisances of the rows: edges alike, edges to one side [m], friction [1]
+# of undamaged blocks, as among the nuisances of the rows: edges alike, edges to one side [m], friction [1]
 _EDGES, _SIDE, _SLIDING = 6.7e-3, 1.4e-3, 0.13
-_TABLE = 2.5e-11  # rad/(N m), of a sound table
+_TABLE = 2.5e-11  # rad/(N m), of an undamaged table
 _TURN = 1.5e-5  # rad, of the slab's rotation
 _PULLED = 0.02  # m, by which a jack or a snap release moves the top
 
@@ -30,7 +30,8 @@ class StaticTest(NamedTuple):
 
 
 def static_tests(seen, unmoved=()):
-    """`StaticTest` of a structure, as of a `SeenTest`; of tilts, releases, pulls and wedges where joints are a tree.
+    """`StaticTest` of a structure, as of a `ReconstructedTest`; of tilts, releases, pulls and wedges where joints are a
+    tree.
 
     ``unmoved`` are indices of faces that opened in no test, and may be opened by a wedge.
     """
@@ -86,7 +87,7 @@ def expected_readings(seen, name, place, values):
 
     Parameters
     ----------
-    seen : SeenTest
+    seen : ReconstructedTest
     name : str
         Effect, or form from outside.
     place : dict

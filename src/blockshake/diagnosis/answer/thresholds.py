@@ -9,7 +9,7 @@ from blockshake.diagnosis.outside.registry import FORMS
 FREE_FORCE = "unknown-force"
 FREE_SHARE = 0.85  # of what any force at its place would explain, that a named form must
 PRIOR, _PRIOR_OUTSIDE, _PRIOR_FREE = -3.0, -3.5, -6.0
-ODDS = float(np.log(20.0))  # within which causes are not told apart
+ODDS = float(np.log(20.0))  # within which causes are not distinguished
 RATE = 0.02  # chance that clean tests exceed the threshold of any cause
 _SCALE = 1.0  # nats, of the evidence without a cause where the model is right: its chance falls as exp(-x)
 

@@ -1,1 +1,1 @@
-"""One likelihood of all forces of a campaign: every cause says which forces it makes, and the readings decide."""
+"""One likelihood of all forces of a campaign: every cause states which forces it makes, and the readings decide."""

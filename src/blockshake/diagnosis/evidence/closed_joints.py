@@ -16,7 +16,7 @@ _NOISE_SHARE, _LEAST_NOISE, _RIDGE = 0.8, 1e-5, 0.1
 
 
 class ClosedJoint(NamedTuple):
-    """Rotation of a closed joint over its compliance, beside that of elastic blocks alone.
+    """Rotation of a closed joint over its compliance, in addition of elastic blocks alone.
 
     ``target`` and ``information`` [N/m3, (N/m3)^2]: of the compliance, such that c gains ``c target - c^2 information /
     2``; a soft layer c has the target ``c information`` in the mean.
@@ -36,7 +36,8 @@ class ClosedJoint(NamedTuple):
 
 
 def closed_joints(tests):
-    """`ClosedJoint` by joint of `SeenTest`; only where joints are a tree, and of those that are closed long enough."""
+    """`ClosedJoint` by joint of `ReconstructedTest`; only where joints are a tree, and of those that are closed long
+    enough."""
     if not tests[0].tree:
         return {}
     joints = {}

@@ -41,7 +41,7 @@ class Fit:
 
 @dataclass(frozen=True)
 class Explanation:
-    """A cause at a place beside one likelihood."""
+    """A cause at a place under one noise model."""
 
     cause: str  # an effect of the registry, or a form from outside
     place: str  # where it acts
@@ -52,7 +52,7 @@ class Explanation:
 
     @cached_property
     def best(self):
-        """The likeliest `Fit`."""
+        """The most probable `Fit`."""
         return max(self.fits, key=lambda fit: fit.gain)
 
     @property
@@ -67,7 +67,7 @@ def mean_evidence(gains):
 
 
 def best_of(likelihood, cause, place, variants):
-    """`Explanation` by variants of the same prior, `Columns` by variant and test, whose evidences are averaged."""
+    """`Explanation` by variants of the same prior, `DesignMatrix` by variant and test, whose evidences are averaged."""
     widths = [variant[0].rows.shape[1] for variant in variants]
     stacked = [
         np.concatenate([variant[test].rows for variant in variants], axis=1)

@@ -1,4 +1,4 @@
-"""Rows of every test beside what its turned and slipping faces put into them, each made once."""
+"""Rows of every test next to what its turned and slipping faces put into them, each made once."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from blockshake.forces.joint_motion import TURNED
-from blockshake.forces.seen.seen_test import SeenTest
+from blockshake.forces.seen.reconstructed_test import ReconstructedTest
 from blockshake.forces.seen.wrench_histories import (
     bed_inset,
     edge_inward,
@@ -49,7 +49,7 @@ class Slide:
 class JointRows:
     """Rows of one test, and its hinges and slides."""
 
-    seen: SeenTest
+    seen: ReconstructedTest
 
     @property
     def rows(self):

@@ -1,4 +1,4 @@
-"""Gaussian likelihood of the rows of all tests, nuisances marginalised, and the evidence of columns beside them."""
+"""Gaussian likelihood of the rows of all tests, nuisances marginalised, and the evidence of columns given them."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -50,7 +50,7 @@ class Likelihood:
     @cached_property
     def log_evidence(self):
         """Logarithm of the evidence of the rows themselves without any cause, with the prior of this likelihood."""
-        # ln |C| of the whitening, which evidences beside one likelihood share and those of two do not
+        # ln |C| of the whitening, which evidences under one noise model share and those of two do not
         spread = sum(np.log(np.diag(root)).sum() for root in self.roots)
         return self.log_evidence_of_rows - spread + self.prior
 
@@ -123,7 +123,7 @@ class Likelihood:
         )
         return gain_of_one(target, gram, scale, False)
 
-    def beside(self, columns, scales, errors):
+    def given(self, columns, scales, errors):
         """The likelihood with the columns of a cause among the nuisances, and errors of its form.
 
         Parameters

@@ -1,4 +1,4 @@
-"""Small errors of sound blocks that nobody knows to the millimetre: every cause is compared beside them.
+"""Geometric tolerances of undamaged blocks, marginalised with every cause.
 
 Each is a column of the rows times its standard deviation, marginalised in closed form.
 """
@@ -7,7 +7,7 @@ import numpy as np
 
 from blockshake.forces.joint_motion import TURNED
 
-# m, mean by which edges lie further in than the structure file says: chamfers and contact nodes
+# m, mean by which edges lie further in than in the structure file : chamfers and contact nodes
 INWARD = 0.005
 _ALL_INWARD, _INWARD, _ALONG, _ALONG_OF_TEST = 0.006, 0.003, 0.001, 0.001  # m
 _GROWTH, _GROWTH_AT = 0.0015, 0.01  # m by this rotation: edges are rounded

@@ -17,12 +17,12 @@ def row_covariance(test, noise, discrepancy):
     noise : float
         Standard deviation of the sensors over the stated one [1].
     discrepancy : float
-        Of the joints' own errors over the usual ones [1].
+        The joints' own errors over the usual ones [1].
 
     Notes
     -----
     Every sensor's noise goes on from instant to instant as its `Colour` does under the kernel. The errors of levers and
-    of friction are Ornstein-Uhlenbeck processes beside white ones.
+    of friction are Ornstein-Uhlenbeck processes with white ones.
     """
     rows = test.rows
     apart = np.abs(rows.time[:, None] - rows.time)

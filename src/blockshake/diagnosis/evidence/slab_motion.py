@@ -14,7 +14,7 @@ from blockshake.geometry.rotations import rotation_matrices
 _EVERY = 3  # instants
 _TURN_NOISE, _LIFT_NOISE = 1.5e-5, 2e-5  # rad, m: no sensor is better
 _COLOURED, _MEMORY = 5e-6, 0.1  # rad, s: of the rotation
-_OFFSET, _BY_ACCELERATION, _BY_MOMENT = 3e-5, 1.5e-5, 2.5e-11  # rad, rad s2/m, rad/(N m): of sound tables
+_OFFSET, _BY_ACCELERATION, _BY_MOMENT = 3e-5, 1.5e-5, 2.5e-11  # rad, rad s2/m, rad/(N m): of undamaged tables
 _LIFT_COLOURED, _LIFT_OFFSET, _LIFT_BY_FORCE, _LIFT_BY_TURN = 1e-5, 3e-5, 1e-8, 0.6  # m, m, m/N, m
 _BOUNCE, _BOUNCE_MEMORY = 1.5e-4, 0.03  # m, s: of a base that gives
 _MULTIPLES = ((1.0, 0.0), (3.0, -2.0), (9.0, -8.0))  # of the coloured error, and the logarithm of their prior
@@ -53,7 +53,7 @@ class SlabMotion:
 
 
 def slab_motion(test):
-    """`SlabMotion` of a `SeenTest`."""
+    """`SlabMotion` of a `ReconstructedTest`."""
     motion, body = test.motion, int(np.flatnonzero(test.structure.driven)[0])
     start = motion.rotation[:, body] @ rotation_matrices(test.structure.orientation[body]).T
     turn = from_rest(np.arcsin(np.clip(start[:, 0, 2], -1.0, 1.0)), test.still)

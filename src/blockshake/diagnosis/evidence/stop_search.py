@@ -12,7 +12,7 @@ _NEGLIGIBLE = 8.0  # nats below the best gaps
 def explain_stops(likelihood, place, variants):
     """`Explanation` of springs beyond gaps at one point.
 
-    ``variants`` are `Columns` by gap and test, all of the side of +x first, from the smallest gap on. Where the
+    ``variants`` are `DesignMatrix` by gap and test, all of the side of +x first, from the smallest gap on. Where the
     smallest on both sides are best it is no stop but a spring to either side: its evidence is none.
     """
     half = len(variants) // 2

@@ -47,7 +47,7 @@ class Extension:
 
 
 def acting_causes(decision):
-    """Causes that extend the model: of every part of the readings the likeliest, where a model can hold it."""
+    """Causes that extend the model: of every part of the readings the most probable, where a model can hold it."""
     return tuple(cause for cause in decision.extending if can_extend(cause))
 
 
@@ -102,14 +102,14 @@ def extended_runs(plan, model, causes, nominal, measured, store):
 
     Notes
     -----
-    The recalibrated and the extended model are conditioned on the open tests, each beside what it has: the latter from
+    The recalibrated and the extended model are conditioned on the open tests, each given what it has: the latter from
     simulations of the open tests with the cause. The placebo is the extended model with the cause elsewhere. Member k
     of each is nominal draw k, so that two of them differ by their causes and their conditioning alone.
     """
     structure = next(iter(plan.tests.values())).structure
     draws = [draw_nominal(structure, model, number) for number in range(plan.effort.draws)]
     ensembles = {
-        test: _beside(
+        test: _with_it(
             [simulate_members(_members(EXTENDED, test, planned, draws, causes), store), nominal[test]]
         )
         for test, planned in plan.tests.items()
@@ -127,7 +127,7 @@ def extended_runs(plan, model, causes, nominal, measured, store):
         members += nominal_members(test, planned, model, count, plan.effort.twins)
         for kind, (conditioned, acting) in drawn.items():
             members += _members(kind, test, planned, conditioned[:count], acting)
-    runs = _beside([simulate_members(members, store), *(ensembles[test] for test in plan.selecting)])
+    runs = _with_it([simulate_members(members, store), *(ensembles[test] for test in plan.selecting)])
     return runs.assign_attrs(simulated=len(members) + len(plan.tests) * plan.effort.draws)
 
 
@@ -138,7 +138,7 @@ def _members(kind, test, planned, draws, causes):
     ]
 
 
-def _beside(ensembles):
+def _with_it(ensembles):
     """Runs of several ensembles of one solver, one after the other."""
     return xr.concat(
         ensembles, dim="run", join="outer", coords="minimal", compat="override", combine_attrs="override"

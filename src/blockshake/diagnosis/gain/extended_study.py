@@ -22,7 +22,7 @@ from blockshake.geometry.schema import EXTENSION, StructureFile
 from blockshake.geometry.structure import Structure, load_structure
 from blockshake.geometry.structure_file import dotted_values, replace_into
 from blockshake.measurement.campaigns.campaign import load_campaign
-from blockshake.measurement.campaigns.campaign_folder import copy_beside
+from blockshake.measurement.campaigns.campaign_folder import copy_unless_same
 from blockshake.measurement.sensors.instruments import Instruments
 from blockshake.quantities import unit_of
 from blockshake.study.config import check_config, load_config
@@ -30,11 +30,11 @@ from blockshake.study.sampling.correlation_target import nearest_correlation
 from blockshake.study.sampling.latin_hypercube import complete_correlation
 from blockshake.validation import validated
 
-_OF_THE_TABLE = ("base-compliance",)  # beside those that act on the input: the slab's motion has it already
+_OF_THE_TABLE = ("base-compliance",)  # with those that act on the input: the slab's motion has it already
 _STEPS = np.linspace(0.0, 1.0, 11)  # of the probability, at which quantiles are tabulated
 _DIGITS = 6  # of a value
 _RISE = 1e-4  # of their range, by which quantiles of equal members rise
-_TOLD = 0.4  # correlation that 99 of 100 sets of 40 unrelated members stay below
+_CORRELATED = 0.4  # correlation that 99 of 100 sets of 40 unrelated members stay below
 
 
 class _Extended(NamedTuple):
@@ -57,7 +57,7 @@ def extend_study(verdict: AnyPath, study: AnyPath, output: AnyPath) -> list[str]
     study : str or path
         Configuration of an ordinary study.
     output : str or path
-        Of the extended study; the files of its structures, and of the correlation where there is any, lie beside it
+        For the extended study; the files of its structures, and of the correlation where there is any, lie with it
         and begin with its name.
 
     Returns
@@ -138,7 +138,7 @@ def extend_study(verdict: AnyPath, study: AnyPath, output: AnyPath) -> list[str]
     _write(texts, made)
     for one in extended.values():
         for mesh in {shape.mesh for shape in one.structure.file.shapes.values()} - {None}:
-            copy_beside(one.structure.folder / mesh, made.parent / mesh)
+            copy_unless_same(one.structure.folder / mesh, made.parent / mesh)
     return [
         *lines,
         *map(str, texts),
@@ -160,7 +160,7 @@ def _causes(found, verdict):
         raise InputError(verdict, "extension", f"{expected}; {what}")
     lines = [f"{name} is left out: no structure file can state it" for name in others]
     if found.decision == "ambiguous":
-        lines.append(f"the verdict is one of several; the likeliest is taken: {_title(held)}")
+        lines.append(f"the verdict is one of several; the most probable is taken: {_title(held)}")
     return held, lines
 
 
@@ -231,15 +231,15 @@ def _ensemble(ensemble, variables, path):
     for name, values in leaders.items():
         rising = np.quantile(values, _STEPS) + _RISE * np.ptp(values) * _STEPS
         given[name] = {"distribution": "tabulated", "values": list(map(_rounded, rising))}
-    asked = {"size": ensemble.size, "seed": ensemble.seed, "distributions": given, "linked": linked}
+    settings = {"size": ensemble.size, "seed": ensemble.seed, "distributions": given, "linked": linked}
     target = complete_correlation(ensemble.correlation, list(given))
     own = slice(len(ensemble.distributions), None)
     among = np.atleast_2d(np.corrcoef(list(leaders.values())))
-    target[own, own] = np.round(nearest_correlation(np.where(np.abs(among) > _TOLD, among, 0.0)), 4)
+    target[own, own] = np.round(nearest_correlation(np.where(np.abs(among) > _CORRELATED, among, 0.0)), 4)
     named = np.flatnonzero((target != np.eye(len(given))).any(axis=0))
     if not len(named):
-        return asked, None
-    return asked | {"correlation": str(path)}, pd.DataFrame(target, given, given).iloc[named, named]
+        return settings, None
+    return settings | {"correlation": str(path)}, pd.DataFrame(target, given, given).iloc[named, named]
 
 
 def _rounded(value):

@@ -23,7 +23,7 @@ def features_of(tests):
     Parameters
     ----------
     tests : list of JudgedTest
-        Of ensembles of one kind by one solver, the same members in all.
+        For ensembles of one kind by one solver, the same members in all.
 
     Returns
     -------
@@ -54,7 +54,7 @@ def posterior_draws(draws, features, measured):
     Parameters
     ----------
     draws : list of Draw, length n_draws
-        Of one solver.
+        One solver.
     features : float64 array, shape (n_draws, n_features)
         That they gave, noise of the sensors in them, from `features_of`.
     measured : float64 array, shape (n_features,)

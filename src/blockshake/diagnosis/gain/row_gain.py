@@ -19,7 +19,7 @@ _BLOCK = 0.5  # s, of rows that are drawn together
 _DRAWS = 1000
 _NOTHING = 1.645  # standard deviations of the floor, within which nothing is to gain
 _IDLE = "nothing to gain on the sealed tests' forces against the {} model: it is within its errors"
-NO_ROWS = "no gain was measured on forces: the cause says nothing of those of the sealed tests"
+NO_ROWS = "no gain was measured on forces: the cause predicts nothing of those of the sealed tests"
 
 
 class Squares(NamedTuple):
@@ -35,15 +35,17 @@ class Squares(NamedTuple):
 
 
 def row_gain(decision, opened, sealed):
-    """`Gain` of the causes of a `Decision` on sealed tests, or None; and caveats. Tests are lists of `SeenTest`.
+    """`Gain` of the causes of a `Decision` on sealed tests, or None; and caveats. Tests are lists of
+    `ReconstructedTest`.
 
     Notes
     -----
-    The models predict the rows of a sealed test: nominal with the edges and coefficients of sound blocks, recalibrated
-    with those that fit the open tests without the cause, extended with those that fit beside it, and a discrepancy
-    without a name whose edges and coefficients lie once, three or ten times as far off, as the open tests say. The gain
-    is ``(D_rival - D_extended) / (D_rival - D_floor)``, of mean squared distances D; intervals of 90 % by a bootstrap
-    of blocks of 0.5 s. A push starts in a sealed test when it fits best: its size is frozen, its start cannot be.
+    The models predict the rows of a sealed test: nominal with the edges and coefficients of undamaged blocks,
+    recalibrated with those that fit the open tests without the cause, extended with those that fit with it, and a
+    discrepancy without a name whose edges and coefficients lie once, three or ten times as far off, as the open tests
+    say. The gain is ``(D_rival - D_extended) / (D_rival - D_floor)``, of mean squared distances D; intervals of 90 % by
+    a bootstrap of blocks of 0.5 s. A push starts in a sealed test when it fits best: its size is frozen, its start
+    cannot be.
     """
     parts = [*_of_joints(decision, opened, sealed), *_of_slab(decision, opened, sealed)]
     if not parts:
@@ -85,7 +87,7 @@ def _drawn(whole):
 
 
 def _of_joints(decision, opened, sealed):
-    """`Squares` of the joints' rows; none without a cause that says something of them."""
+    """`Squares` of the joints' rows; none without a cause that constrains them."""
     causes = [part.causes[0] for part in decision.parts if part.readings.startswith("joints")]
     before = [JointRows(one) for one in opened if len(one.rows.value)]
     after = [JointRows(one) for one in sealed if len(one.rows.value)]
@@ -99,19 +101,19 @@ def _of_joints(decision, opened, sealed):
         return []
     rows = [sum(of_test) for of_test in zip(*explained, strict=True)]
     times = [test.rows.time for test in after]
-    return [_squares(_loudest(models, rows, len(before)), rows, len(before), times)]
+    return [_squares(_most_probable(models, rows, len(before)), rows, len(before), times)]
 
 
-def _loudest(models, rows, n_open):
-    """The likelihood that says most for the open tests, the cause's rows taken off."""
+def _most_probable(models, rows, n_open):
+    """Noise model with the largest evidence in the open tests, the cause's rows taken off."""
 
-    def says(model):
+    def log_evidence(model):
         stop = model.ends[n_open]
         value = (model.value - model.whiten([one[:, None] for one in rows])[:, 0])[:stop]
         spread = sum(np.log(np.diag(root)).sum() for root in model.roots[:n_open])
-        return _says(value, model.nuisances[:stop]) - spread + model.prior
+        return _log_evidence(value, model.nuisances[:stop]) - spread + model.prior
 
-    return max(models, key=says)
+    return max(models, key=log_evidence)
 
 
 def _squares(model, rows, n_open, times):
@@ -120,7 +122,7 @@ def _squares(model, rows, n_open, times):
     off = model.whiten([one[:, None] for one in rows])[:, 0]
     seen, further = model.nuisances[:stop], model.nuisances[stop:]
     by_kind, none = {}, np.zeros(len(off))
-    unnamed = max(_WIDER, key=lambda wider: _says(model.value[:stop], seen * wider))
+    unnamed = max(_WIDER, key=lambda wider: _log_evidence(model.value[:stop], seen * wider))
     for kind, taken, wider in (
         (EXTENDED, off, 1.0), (RECALIBRATED, none, 1.0), (NOMINAL, none, 0.0), (DISCREPANCY, none, unnamed),
     ):  # fmt: skip
@@ -137,7 +139,7 @@ def _fitted(value, nuisances):
     return np.linalg.solve(np.eye(nuisances.shape[1]) + nuisances.T @ nuisances, nuisances.T @ value)
 
 
-def _says(value, nuisances):
+def _log_evidence(value, nuisances):
     """Logarithm of the density of whitened rows, up to a constant."""
     misfit = value @ value - (nuisances.T @ value) @ _fitted(value, nuisances)
     return -0.5 * misfit - 0.5 * np.linalg.slogdet(np.eye(nuisances.shape[1]) + nuisances.T @ nuisances)[1]
@@ -170,14 +172,15 @@ def _of_slab(decision, opened, sealed):
 
 
 def cause_rows(cause, opened, sealed, likelihood):
-    """Rows of a cause by test at its frozen size, (n_rows,) each; None of a cause that says nothing of tests to come.
+    """Rows of a cause by test at its frozen size, (n_rows,) each; None of a cause that predicts nothing of tests to
+    come.
 
     Parameters
     ----------
     cause : Cause
     opened, sealed : list of JointRows
     likelihood : Likelihood
-        Of all of these, by which the start of a push in a sealed test is found.
+        For all of these, by which the start of a push in a sealed test is found.
     """
     tests = [*opened, *sealed]
     amplitudes = np.array(cause.amplitudes)

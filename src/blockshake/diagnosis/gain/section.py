@@ -73,8 +73,8 @@ def _gains(verdict):
                 (words, *(percent_words(contrast) if contrast else MISSING for contrast in contrasts))
             )
     return Table(
-        "Gain against each rival with its interval of 90 %. Forces: those that sound blocks do not make, or the "
-        "motion of the slab that a sound table does not make, at the frozen sizes. Responses: simulated rotations "
+        "Gain against each rival with its interval of 90 %. Forces: those that undamaged blocks do not make, or the "
+        "motion of the slab that an undamaged table does not make, at the frozen sizes. Responses: simulated rotations "
         "and slips of the joints and the drift of the top, as long as each can be predicted.",
         ("Rival", *(name for _, name in columns)),
         tuple(rows),

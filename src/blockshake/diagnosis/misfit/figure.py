@@ -1,4 +1,4 @@
-"""Histories of tests beside the ensembles that predict them, as long as they can be predicted."""
+"""Histories of tests against the ensembles that predict them, as long as they can be predicted."""
 
 import numpy as np
 from matplotlib.legend_handler import HandlerTuple

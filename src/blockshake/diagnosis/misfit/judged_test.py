@@ -1,4 +1,4 @@
-"""A measured test beside ensembles that predict it, cell by cell, as long as each cell can be predicted."""
+"""A measured test against ensembles that predict it, cell by cell, as long as each cell can be predicted."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ import xarray as xr
 from blockshake.diagnosis.nominal.ensemble import NOMINAL, TWIN, runs_of
 from blockshake.diagnosis.nominal.histories import as_cells, at_readings, common_times, read_histories
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.campaigns.starting_places import standing
+from blockshake.measurement.campaigns.initial_poses import initial_poses
 from blockshake.parity.correction import load_corrected_test
 from blockshake.statistics.intervals import sample_quantiles
 
@@ -16,7 +16,7 @@ BAND = (0.05, 0.5, 0.95)
 _MOVES = 5.0  # standard deviations of a reading, beyond which a cell moves
 _OFTEN = 0.99  # of the time that a cell is nearer
 _ENDED = 0.5  # share of an ensemble's members that have ended, from which on a test is not judged
-_TOLD_APART_BY = 3.0  # standard deviations of a reading that twins must be apart to be told apart
+_PARTED_BY = 3.0  # standard deviations of a reading that twins must be apart to be distinguished
 _SHARE_OF_MOTION = 0.3  # of the farthest that a cell has moved until then
 
 
@@ -45,7 +45,7 @@ class JudgedTest:
         return np.where(self.judged, values, np.nan)
 
     def bands(self):
-        """Quantiles of the ensembles beside what was measured, and the horizon.
+        """Quantiles of the ensembles against what was measured, and the horizon.
 
         Returns
         -------
@@ -117,8 +117,8 @@ def _last_standing(cells):
     """Last time at which more than half the members of an ensemble have not ended [s]."""
     known = np.isfinite(cells.to_numpy()).any(axis=2)
     going = np.logical_or.accumulate(known[:, ::-1], axis=1)[:, ::-1]
-    standing = np.flatnonzero(going.mean(axis=0) > _ENDED)
-    return cells["time"].to_numpy()[standing[-1]] if len(standing) else -np.inf
+    running = np.flatnonzero(going.mean(axis=0) > _ENDED)
+    return cells["time"].to_numpy()[running[-1]] if len(running) else -np.inf
 
 
 def horizons(twins, noise):
@@ -139,12 +139,12 @@ def horizons(twins, noise):
     Notes
     -----
     The horizon is the first time at which the standard deviation over the twins is above three standard deviations of
-    a reading, so that they can be told apart, and above 0.3 of the farthest that draw 0 has moved until then, so that
-    it matters. Twins of which one has ended are told apart.
+    a reading, so that they can be distinguished, and above 0.3 of the farthest that draw 0 has moved until then, so
+    that it matters. Twins of which one has ended are distinguished.
     """
     time, values = twins["time"].to_numpy(), twins.transpose("run", "time", "cell").to_numpy()
     moved = np.maximum.accumulate(np.nan_to_num(np.abs(values[0])), axis=0)
-    limit = np.maximum(_SHARE_OF_MOTION * moved, _TOLD_APART_BY * noise.to_numpy())
+    limit = np.maximum(_SHARE_OF_MOTION * moved, _PARTED_BY * noise.to_numpy())
     known = np.isfinite(values)
     started, going = np.logical_or.accumulate(known, axis=1), known[:, ::-1]
     going = np.logical_or.accumulate(going, axis=1)[:, ::-1]
@@ -169,6 +169,6 @@ def measured_histories(campaign, names, findings):
     structure = load_structure(campaign.structure)
     tests = {name: load_corrected_test(campaign, name, structure, findings) for name in names}
     return {
-        name: read_histories(test, standing(structure, test), campaign.sensors)
+        name: read_histories(test, initial_poses(structure, test), campaign.sensors)
         for name, test in tests.items()
     }

@@ -1,4 +1,4 @@
-"""Misfit of the nominal model: its ensembles beside the measured histories of the open tests."""
+"""Misfit of the nominal model: its ensembles against the measured histories of the open tests."""
 
 import numpy as np
 import xarray as xr
@@ -14,7 +14,7 @@ def misfit(tests):
     Parameters
     ----------
     tests : list of JudgedTest
-        Of the nominal ensemble; the same members in all, in one order.
+        For the nominal ensemble; the same members in all, in one order.
 
     Returns
     -------

@@ -14,7 +14,7 @@ _MOST_PANELS = 6
 
 
 def misfit_section(diagnosed):
-    """Worst histories beside the nominal ensemble; None where nothing was simulated."""
+    """Worst histories against the nominal ensemble; None where nothing was simulated."""
     misfit = diagnosed.misfit
     if misfit is None:
         return None
@@ -22,7 +22,7 @@ def misfit_section(diagnosed):
     rows = [_row(misfit, *one) for one in ranked[:_MOST_ROWS]]
     blocks = (
         Text(
-            f"Nominal simulations by all solvers beside the open tests, as long as each history can be predicted: "
+            f"Nominal simulations by all solvers against the open tests, as long as each history can be predicted: "
             f"chance of a misfit as large as the largest without anything wrong, {chance_words(float(misfit['p']))}. "
             f"Largest: {misfit.attrs['where']}. No cause was decided by it."
         ),

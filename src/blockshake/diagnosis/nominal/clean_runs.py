@@ -7,13 +7,13 @@ import numpy as np
 from blockshake.diagnosis.answer.answer import rank
 from blockshake.diagnosis.answer.explain import gather_evidence
 from blockshake.diagnosis.answer.places import joined_bodies
+from blockshake.diagnosis.evidence.angular_momentum_ratio import restitution_gain
 from blockshake.diagnosis.evidence.closed_joints import closed_joints
 from blockshake.diagnosis.evidence.slab_motion import explain_slab, slab_motion
-from blockshake.diagnosis.evidence.spin_kept import restitution_gain
 from blockshake.diagnosis.nominal.nominal_model import draw_nominal
 from blockshake.diagnosis.nominal.simulated_test import simulated_test
 from blockshake.effects.impact_restitution import EFFECT as RESTITUTION
-from blockshake.forces.seen.seen_test import see_test, why_unseen
+from blockshake.forces.seen.reconstructed_test import reconstruct_test, why_not_reconstructed
 from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.motion.fall import find_fall, until_fall
 from blockshake.store import Unit
@@ -47,7 +47,8 @@ def simulate_clean_runs(planned, channels, solver, count, store):
 
 
 def gains_by_cause(seen):
-    """Logarithm of the evidence of every cause over none, by name, at the places of `rank`, of `SeenTest` together."""
+    """Logarithm of the evidence of every cause over none, by name, at the places of `rank`, of `ReconstructedTest`
+    together."""
     closed = {name: joint.gains for name, joint in closed_joints(seen).items()}
     gains = {one.cause: one.gain for one in rank(gather_evidence(seen), closed, joined_bodies(seen))}
     gains |= {name: one.gain for name, one in explain_slab([slab_motion(test) for test in seen]).items()}
@@ -68,7 +69,7 @@ class _CleanRun(Unit):
 
 def _gains(tests, solver, number):
     seen = [
-        see_test(name, readings, test.structure, test.sensors)
+        reconstruct_test(name, readings, test.structure, test.sensors)
         for index, (name, test, channels) in enumerate(tests)
         if (readings := _readings(test, channels, solver, number, index)) is not None
     ]
@@ -87,7 +88,7 @@ def _readings(test, channels, solver, number, index):
     if channels:
         read = read.sel(channel=[name for name in channels if name in read["channel"].values])
     read = without_outliers(until_fall(read, find_fall(read, test.structure, test.sensors)), test.structure)
-    return None if why_unseen(read, test.structure) else read
+    return None if why_not_reconstructed(read, test.structure) else read
 
 
 def _words(gains):

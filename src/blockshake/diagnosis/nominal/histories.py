@@ -24,7 +24,7 @@ def read_histories(test, structure, sensors):
     structure : Structure
         The campaign's, for a simulated test too, whatever was varied in it.
     sensors : Sensors
-        Of the campaign.
+        The campaign.
 
     Returns
     -------

@@ -22,7 +22,7 @@ _FRICTION, _DENSITY, _MODULUS = (
 _PLACE_SPREAD = 3e-4  # m, standard deviation of where a block stands, along x and y
 _YAW_SPREAD = 2e-4  # rad, of how it is turned about z
 _AMPLITUDE_SPREAD = 0.01  # of the motion's amplitude: how well a table follows
-_FAST_SPREAD = 0.01  # of what is faster than its mean over some 0.1 s, beside that
+_FAST_SPREAD = 0.01  # of what is faster than its mean over some 0.1 s, in addition
 # readings: noise over the stated one (standard deviation of its logarithm), its memory, shares lost and wrong, at most
 _LOUDER, _MEMORY, _LOST, _WRONG = 0.1, 0.7, 0.03, 0.02
 # twins: less than sensors resolve
@@ -55,7 +55,7 @@ def draw_nominal(structure, model, number):
     -----
     Parameters are drawn independently with the scatter of Table 2 of Zhou et al. (2023) about the values of the
     structure file; contact stiffness goes with Young's modulus, about that of the structure's own blocks. The
-    discretisation is uncertain too, since no measurement says which one is right: each model's `Perturbation` has its
+    discretisation is uncertain too, since no measurement states which one is right: each model's `Perturbation` has its
     parameters. A diagnosis with one fixed discretisation calls every other one an effect; so does one with white noise
     alone, once readings have a memory, gaps and outliers.
 

@@ -30,7 +30,7 @@ class Effort:
     draws: int  # nominal models of each open test, by each solver
     members: int  # of every ensemble that predicts a sealed test, by each solver
     twins: int  # by which it is measured how long a test can be predicted, by each solver
-    outcomes: int  # models of each test of which it is known alone whether the body fell
+    outcomes: int  # simulations per test with a binary outcome
     clean: int  # nominal models at most of all open tests together, by each solver, that are judged as if measured
     clean_seconds: float = np.inf  # of one core, that these may take by `_SECONDS`
 
@@ -139,7 +139,7 @@ def simulated_tests(campaign, names, most):
     """Those of the open tests that are simulated, in the campaign's order.
 
     Those to select by, the strongest of each motion, then the others, by falling scale: where nothing moves, nothing is
-    told.
+    known.
     """
     falling = sorted((campaign.tests[name] for name in names), key=lambda test: (-abs(test.scale), test.name))
     strongest = {}

@@ -12,8 +12,8 @@ from blockshake.geometry.structure import Structure
 from blockshake.measurement.campaigns.campaign import Sensors, load_test
 from blockshake.measurement.campaigns.clocks import reading_rate, simulation_start, since
 from blockshake.measurement.campaigns.commanded_motion import commanded_motion
+from blockshake.measurement.campaigns.initial_poses import initial_poses
 from blockshake.measurement.campaigns.recorded_test import structure_at_start
-from blockshake.measurement.campaigns.starting_places import standing
 from blockshake.measurement.motion.fall import find_fall, until_fall
 from blockshake.measurement.sensors.markers import RATE, unread_directions
 
@@ -87,7 +87,7 @@ def planned_test(campaign, name, structure):
     test = since(test, -late)
     time, rate = test["time"].to_numpy(), reading_rate(test["time"].to_numpy())
     return PlannedTest(
-        structure=standing(structure, test),
+        structure=initial_poses(structure, test),
         motion=planned_motion(campaign, name),
         duration=float(np.ceil(time[-1] * rate - _SAME_READING) / rate),
         sensors=campaign.sensors,

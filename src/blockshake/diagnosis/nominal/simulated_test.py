@@ -12,7 +12,7 @@ from blockshake.diagnosis.nominal.nominal_model import Draw
 from blockshake.diagnosis.nominal.planned_test import PlannedTest
 from blockshake.effects.effect import Experiment
 from blockshake.measurement.campaigns.clocks import since
-from blockshake.measurement.campaigns.starting_places import placed
+from blockshake.measurement.campaigns.initial_poses import placed
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.simulation.models import part_parameters
 from blockshake.simulation.simulate import simulate
@@ -27,10 +27,10 @@ def simulated_test(planned, draw, extension=None, accelerometers=False):
     Parameters
     ----------
     planned : PlannedTest
-        The draw says how the table followed its motion.
+        The draw states how the table followed its motion.
     draw : Draw
     extension : callable, optional
-        Of an `Experiment`: the experiment with what the extended model has beside the nominal one.
+        For an `Experiment`: the experiment with what the extended model has against the nominal one.
     accelerometers : bool
         Whether they are read too.
 

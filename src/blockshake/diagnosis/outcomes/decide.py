@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from blockshake.diagnosis.answer.answer import Rival, find_causes, share_of
+from blockshake.diagnosis.answer.answer import Alternative, find_causes, share_of
 from blockshake.diagnosis.answer.decide import chance, kind_of, probabilities
 from blockshake.diagnosis.answer.decision import MEMBERS, Cause, Decision, Estimate, Part
 from blockshake.diagnosis.answer.thresholds import by_odds
@@ -28,7 +28,7 @@ PREDICTED = ("nominal", "recalibrated", "extended", "curve")
 
 
 class DecidedOutcomes(NamedTuple):
-    """A decision; and of every open test its outcome beside what the models predict."""
+    """A decision; and of every open test its outcome against what the models predict."""
 
     decision: Decision
     evidence: xr.Dataset
@@ -40,13 +40,13 @@ def decide(campaign, files, without):
 
 
 def decide_outcomes(campaign, files, without=()):
-    """Decide what the outcomes of a campaign's open tests speak for.
+    """Decide what the outcomes of a campaign's open tests support.
 
     Parameters
     ----------
     campaign : Campaign
     files : list of path
-        Of the batches of `simulate_outcomes`.
+        The batches of `simulate_outcomes`.
     without : sequence of str
         Effects that are left out.
     """
@@ -70,7 +70,7 @@ def decide_outcomes(campaign, files, without=()):
             for cause in CAUSES
             if cause not in acting and cause not in without
         }
-        rivals = [Rival(cause, name, gain, gain, (name,)) for cause, gain in gains.items()]
+        rivals = [Alternative(cause, name, gain, gain, (name,)) for cause, gain in gains.items()]
         return sorted(rivals, key=lambda one: -one.gain)
 
     groups = find_causes(ranked, lambda cause, known: by_odds(cause) + share_of(known))
@@ -152,7 +152,7 @@ def _part(body, extent, group, others, weigh):
 def _not_seen(outcomes, names, telling, chances, fell):
     """Lines on what the outcomes do not show."""
     lines = [
-        f"{len(names) - len(telling)} of {len(names)} open tests end alike by all sound models, and tell little"
+        f"{len(names) - len(telling)} of {len(names)} open tests end alike by all undamaged models, and tell little"
     ]
     unfinished = sum(int(np.isnan(run["lean"]).sum()) for run in outcomes.runs)
     if unfinished:

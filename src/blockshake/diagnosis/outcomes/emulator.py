@@ -6,7 +6,7 @@ import numpy as np
 import scipy
 from scipy.special import log_ndtr, logsumexp, ndtr
 
-# rad: below it a body hardly rocks, and a lean says nothing about a fall
+# rad: below it a body hardly rocks, and a lean predicts nothing about a fall
 _SMALLEST = np.radians(0.3)
 _LARGEST = np.radians(20.0)  # of the lean that counts as a fall
 _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(9)  # of what a test has beyond its motion's peaks
@@ -25,7 +25,7 @@ class Emulator(NamedTuple):
     # the test has of its own
     means: np.ndarray
     log_weights: np.ndarray  # float64 (n_tests, n_nodes); of the nodes, after the simulated leans of the test
-    spread: float  # standard deviation of the logarithm beside
+    spread: float  # standard deviation of the logarithm with
 
     def chance(self, tests, shares):
         """Chance of a fall, float64 (n_discrepancies, n_tests, n_models), by models of ``shares`` (n_models, n)."""

@@ -1,4 +1,4 @@
-"""Figures of outcomes: which motions the body survived, and how often it fell beside what was predicted."""
+"""Figures of outcomes: which motions the body survived, and how often it fell against what was predicted."""
 
 import numpy as np
 from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter

@@ -21,7 +21,7 @@ def outcome_gain(campaign, files, decision):
     ----------
     campaign : Campaign
     files : list of path
-        Of the batches of `simulate_outcomes`.
+        The batches of `simulate_outcomes`.
     decision : Decision
 
     Notes

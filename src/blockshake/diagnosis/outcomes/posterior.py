@@ -92,7 +92,7 @@ def posterior(outcomes, rows, fell, causes):
 
 
 def prior(outcomes):
-    """`Posterior` of no test at all: the sound models, alike likely, without a discrepancy."""
+    """`Posterior` of no test at all: the undamaged models, alike likely, without a discrepancy."""
     shares = _drawn(())
     weights = np.zeros((len(outcomes.emulators), len(DISCREPANCIES), len(shares)))
     weights[:, 0] = 1.0 / (len(outcomes.emulators) * len(shares))

@@ -16,8 +16,8 @@ from blockshake.pages.wording import MISSING, count_words, number, sentence_case
 from blockshake.statistics.intervals import share_interval
 
 MODELS_IN_WORDS = {
-    "nominal": "sound models, before any outcome was known",
-    "recalibrated": "sound models, weighted by the open outcomes",
+    "nominal": "undamaged models, before any outcome was known",
+    "recalibrated": "undamaged models, weighted by the open outcomes",
     "extended": "models with the causes, weighted by the open outcomes",
     "curve": "logistic curve over peak acceleration and velocity, fitted to the open outcomes",
 }
@@ -40,7 +40,7 @@ def answer_section(found):
     causes = [part.causes[0] for part in found.decision.parts]
     words = found.verdict.word
     if causes:
-        words += ": " + "; beside it ".join(cause_words(cause, title_of(cause.name)) for cause in causes)
+        words += ": " + "; with it ".join(cause_words(cause, title_of(cause.name)) for cause in causes)
     scores = found.evidence if found.gain is None else found.gain
     which = "open tests, which were fitted to" if found.gain is None else "sealed tests"
     chance, fell = scores["chance"].sel(model="extended").to_numpy(), scores["fell"].to_numpy() == 1
@@ -75,7 +75,7 @@ def balanced_accuracy(chance, fell):
 
 
 def scores_section(found):
-    """Predicted beside measured outcomes by model: confusion, scores, reliability, fragility."""
+    """Predicted and measured outcomes by model: confusion, scores, reliability, fragility."""
     blocks = []
     for scores, which in ((found.gain, "sealed"), (found.evidence, "open")):
         if scores is None:
@@ -119,7 +119,7 @@ def scores_section(found):
             svg_of(plot_fragility, scores),
         )
     )
-    return Section("Predicted beside measured", "scores", tuple(blocks))
+    return Section("Predicted and measured", "scores", tuple(blocks))
 
 
 def _score_row(words, chance, fell):
@@ -153,8 +153,8 @@ def gain_section(found):
     if gain is None:
         return None
     against = {
-        "sound models, before any outcome was known": gain.nominal,
-        "sound models, weighted by the open outcomes": gain.recalibrated,
+        "undamaged models, before any outcome was known": gain.nominal,
+        "undamaged models, weighted by the open outcomes": gain.recalibrated,
         "a logistic curve, fitted to the open outcomes": gain.discrepancy,
     }
     return Section(

@@ -16,7 +16,7 @@ class Unknown:
     name: str
     unit: str
     cause: str | None  # effect whose parameter this is; None of what is never named
-    usual: float  # largest share, up or down, that a sound model has
+    usual: float  # largest share, up or down, that an undamaged model has
 
 
 UNKNOWNS = (

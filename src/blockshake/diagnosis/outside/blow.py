@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.diagnosis.evidence.explanation import Explanation, Fit, mean_evidence
-from blockshake.diagnosis.outside.form import Form, force_entry, with_entry
+from blockshake.diagnosis.outside.form import LoadShape, force_entry, with_entry
 from blockshake.forces.motion import WIDTH
 
 _WIDTHS = (0.04, 0.08, 0.16, 0.4)  # s
@@ -62,7 +62,7 @@ def explain_blow(likelihood, points, weight):
     impulses = np.array([blow.impulse for blow in struck])
     covariance = np.diag(np.array([blow.deviation for blow in struck]) ** 2)
     blows = {points.tests[blow.test]: {"time": blow.time, "width": blow.width} for blow in struck}
-    scales = np.maximum(np.abs(impulses), 1.0)  # of what stands beside another cause: free
+    scales = np.maximum(np.abs(impulses), 1.0)  # of what stands given another cause: free
     fit = Fit({"blows": blows}, float(total), columns, scales, impulses, covariance)
     return Explanation("blow", points.place, float(total), (fit,))
 
@@ -105,4 +105,4 @@ def _act(experiment, size, place, when, test):
     return with_entry(experiment, "external_forces", entry)
 
 
-FORM = Form("blow", "a blow", "impulse", "N s", None, _act, lasts=lambda when: False)
+FORM = LoadShape("blow", "a blow", "impulse", "N s", None, _act, lasts=lambda when: False)

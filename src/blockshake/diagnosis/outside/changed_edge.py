@@ -8,7 +8,7 @@ from scipy.linalg import solve_triangular
 from scipy.special import logsumexp
 
 from blockshake.diagnosis.evidence.explanation import NEVER, mean_evidence, single
-from blockshake.diagnosis.outside.form import Form
+from blockshake.diagnosis.outside.form import LoadShape
 
 _STARTS_EVERY = 0.5  # s
 _INSET_SCALE = 0.05  # m
@@ -126,6 +126,6 @@ def _of_test(test, place, when):
     return _inset(test.hinges[key], when["edge"]) if key in test.hinges else np.zeros(len(test.rows.value))
 
 
-FORM = Form(
+FORM = LoadShape(
     "changed-edge", "an edge that changed", "inset", "m", _of_test, _act, lasts=lambda when: when["lasts"]
 )

@@ -3,8 +3,8 @@
 import numpy as np
 
 from blockshake.diagnosis.evidence.explanation import best_of
-from blockshake.diagnosis.outside.form import Form, force_entry, with_entry
-from blockshake.effects.effect import Columns
+from blockshake.diagnosis.outside.form import LoadShape, force_entry, with_entry
+from blockshake.effects.effect import DesignMatrix
 from blockshake.forces.seen.point_rows import point_rows
 from blockshake.geometry.schema import CREEP
 
@@ -15,7 +15,7 @@ def explain_following(likelihood, points, weight):
     """`Explanation` of a rope, a drag and a dry drag at one point."""
     scales = {"rope": _ROPE, "drag": _DRAG, "dry-drag": _DRY * weight}
     for name, scale in scales.items():
-        rows = [Columns({}, _against(name, one)[:, None], (scale,), True) for one in points.by_test]
+        rows = [DesignMatrix({}, _against(name, one)[:, None], (scale,), True) for one in points.by_test]
         yield best_of(likelihood, name, points.place, [rows])
 
 
@@ -41,9 +41,11 @@ def _acts(name):
 
 
 FORMS = (
-    Form("rope", "a rope or spring to either side", "stiffness", "N/m", _rows("rope"), _acts("stiffness")),
-    Form("drag", "a viscous drag", "damping", "N s/m", _rows("drag"), _acts("damping")),
-    Form("dry-drag", "a dry drag", "force", "N", _rows("dry-drag"), _acts("drag")),
-    # of free flights alone: on blocks that rock it is not told from a viscous one
-    Form("square-drag", "a drag with the square of the speed", "coefficient", "kg/m"),
+    LoadShape(
+        "rope", "a rope or spring to either side", "stiffness", "N/m", _rows("rope"), _acts("stiffness")
+    ),
+    LoadShape("drag", "a viscous drag", "damping", "N s/m", _rows("drag"), _acts("damping")),
+    LoadShape("dry-drag", "a dry drag", "force", "N", _rows("dry-drag"), _acts("drag")),
+    # of free flights alone: on blocks that rock it is not distinguished from a viscous one
+    LoadShape("square-drag", "a drag with the square of the speed", "coefficient", "kg/m"),
 )

@@ -9,7 +9,7 @@ from blockshake.geometry.rotations import rotation_matrices
 
 
 @dataclass(frozen=True)
-class Form:
+class LoadShape:
     """A form, its size, and the same in the simulation."""
 
     # name, title: as in ``verdict.json``, and as in reports
@@ -19,7 +19,7 @@ class Form:
     size: str
     unit: str
     # of `JointRows`, the place and ``when``: rows of the form at the size 1, (n_rows,). None where the form
-    # says nothing of tests to come
+    # states nothing of tests to come
     rows: Callable | None = None
     # of an experiment, the size, the place, what else the form is (``when``), and the name of a test: the
     # experiment with it. None of a form that no model holds

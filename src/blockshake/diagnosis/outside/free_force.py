@@ -6,7 +6,7 @@ import numpy as np
 from scipy.linalg import solve_triangular
 
 from blockshake.diagnosis.evidence.explanation import Explanation, Fit, mean_evidence
-from blockshake.diagnosis.outside.form import Form
+from blockshake.diagnosis.outside.form import LoadShape
 
 _SIZES = (300.0, 1e3, 3e3, 1e4)  # N
 _MEMORY = 0.05  # s
@@ -18,7 +18,7 @@ def explain_free_force(likelihood, points):
     Notes
     -----
     Its evidence is that of the rows with the process in their covariance. Its rows are those of its posterior mean at
-    the best size (Rasmussen and Williams 2006, Eq. 2.25), nuisances at their best beside it.
+    the best size (Rasmussen and Williams 2006, Eq. 2.25), nuisances at their best with it.
     """
     by_size = [_with_force(likelihood, points, size) for size in _SIZES]
     evidence = np.array([of_size[0] for of_size in by_size])
@@ -63,4 +63,4 @@ def _solve(root, values, lower=True):
     return solve_triangular(root, values, lower=lower, check_finite=False)
 
 
-FORM = Form("unknown-force", "a force of no known form", "size", "N")
+FORM = LoadShape("unknown-force", "a force of no known form", "size", "N")

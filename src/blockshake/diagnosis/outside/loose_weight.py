@@ -6,8 +6,8 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from blockshake.diagnosis.evidence.explanation import best_of
-from blockshake.diagnosis.outside.form import Form
-from blockshake.effects.effect import Columns
+from blockshake.diagnosis.outside.form import LoadShape
+from blockshake.effects.effect import DesignMatrix
 from blockshake.forces.seen.wrench_histories import force_at
 
 _GRIPS = (0.05, 0.1, 0.2, 0.3)  # coefficients of friction; one that holds is mass of the block
@@ -18,7 +18,10 @@ def explain_loose_weight(likelihood, tests, place, body):
     """`Explanation` of a weight on the top of a body."""
     scale = _SHARE_SCALE * tests[0].seen.structure.mass[body]
     variants = [
-        [Columns({"grip": grip}, _rows(test.seen, body, grip)[:, None], (scale,), True) for test in tests]
+        [
+            DesignMatrix({"grip": grip}, _rows(test.seen, body, grip)[:, None], (scale,), True)
+            for test in tests
+        ]
         for grip in _GRIPS
     ]
     return best_of(likelihood, "loose-weight", place, variants)
@@ -33,29 +36,29 @@ def _rows(seen, body, grip):
     top = 0.5 * float(np.ptp(solid.vertices[:, 2]))
     force = motion.acceleration[:, body] - np.array(seen.structure.file.gravity)
     force = force + np.cross(motion.angular_acceleration[:, body], top * up)
-    asked, pressed = (
+    demand, pressed = (
         np.nan_to_num((force * along).sum(axis=1)),
         np.nan_to_num((force * up).sum(axis=1), nan=9.81),
     )
     step = motion.time[1] - motion.time[0]
-    slid, shear = _slide(asked, np.maximum(pressed, 0.0), grip, step)
+    slid, shear = _slide(demand, np.maximum(pressed, 0.0), grip, step)
     shear = gaussian_filter1d(shear, motion.width / step)  # it jumps where the weight turns back
     weight = -(shear[:, None] * along + np.maximum(pressed, 0.0)[:, None] * up)
     return seen.rows.along(force_at(seen, body, weight, arm=top * up + slid[:, None] * along))
 
 
-def _slide(asked, pressed, grip, step):
+def _slide(demand, pressed, grip, step):
     """Displacement along the top, and the shear by mass that the weight is given, by Coulomb's law.
 
-    ``asked`` is the acceleration along the top, less gravity, that holds the weight in place; ``pressed`` the same
+    ``demand`` is the acceleration along the top, less gravity, that holds the weight in place; ``pressed`` the same
     across it.
     """
-    slid, shear, rate = np.zeros(len(asked)), np.zeros(len(asked)), 0.0
-    for now in range(1, len(asked)):
+    slid, shear, rate = np.zeros(len(demand)), np.zeros(len(demand)), 0.0
+    for now in range(1, len(demand)):
         limit = grip * pressed[now]
         # what would bring it to rest within the step, within the cone: the friction at the end of the step
-        shear[now] = np.clip(asked[now] - rate / step, -limit, limit)
-        rate += (shear[now] - asked[now]) * step
+        shear[now] = np.clip(demand[now] - rate / step, -limit, limit)
+        rate += (shear[now] - demand[now]) * step
         slid[now] = slid[now - 1] + rate * step
     return slid, shear
 
@@ -94,4 +97,4 @@ def _of_test(test, place, when):
     return _rows(test.seen, test.seen.structure.body_names.index(place["body"]), when["grip"])
 
 
-FORM = Form("loose-weight", "a loose weight on top", "mass", "kg", _of_test, _act)
+FORM = LoadShape("loose-weight", "a loose weight on top", "mass", "kg", _of_test, _act)

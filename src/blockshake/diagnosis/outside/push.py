@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.diagnosis.evidence.explanation import mean_evidence, single
-from blockshake.diagnosis.outside.form import Form, force_entry, with_entry
+from blockshake.diagnosis.outside.form import LoadShape, force_entry, with_entry
 from blockshake.forces.seen.point_rows import point_rows
 
 _STARTS_EVERY, _RISE = 0.1, 0.25  # s
@@ -84,4 +84,4 @@ def _act(experiment, size, place, when, test):
     return with_entry(experiment, "external_forces", entry)
 
 
-FORM = Form("push", "a steady push", "force", "N", _rows, _act)
+FORM = LoadShape("push", "a steady push", "force", "N", _rows, _act)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.diagnosis.evidence.explanation import mean_evidence, single
-from blockshake.diagnosis.outside.form import Form, above_centre, with_entry
+from blockshake.diagnosis.outside.form import LoadShape, above_centre, with_entry
 from blockshake.effects.stopper_contact import spring_rows
 
 _GAPS = np.concatenate([[-0.02], np.arange(0.0, 0.0401, 0.002)])  # m; below 0 it is taut from the start
@@ -45,4 +45,6 @@ def _act(experiment, size, place, when, test):
     return with_entry(experiment, "stoppers", entry)
 
 
-FORM = Form("spring-once", "a spring in one test", "stiffness", "N/m", None, _act, lasts=lambda when: False)
+FORM = LoadShape(
+    "spring-once", "a spring in one test", "stiffness", "N/m", None, _act, lasts=lambda when: False
+)

@@ -10,7 +10,7 @@ from blockshake.diagnosis.nominal.simulated_test import simulated_test
 from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import Argument, InputError
 from blockshake.files import load_yaml
-from blockshake.forces.seen.seen_test import see_test, why_unseen
+from blockshake.forces.seen.reconstructed_test import reconstruct_test, why_not_reconstructed
 from blockshake.geometry.schema import Accelerometer, Marker
 from blockshake.geometry.structure import Structure, build_structure, load_structure
 from blockshake.measurement.campaigns.campaign import Sensors
@@ -39,8 +39,8 @@ class SensorFile(Strict):
 
 
 @dataclass(frozen=True)
-class Asked:
-    """The campaign that is asked for."""
+class PlannedCampaign:
+    """The campaign that is requested."""
 
     structure: Structure  # with every sensor, chosen or only thought of
     sensors: Sensors  # their noise
@@ -59,16 +59,16 @@ class Asked:
         return simulated_test(planned, draw_nominal(self.structure, SOLVER, number), accelerometers=True)
 
     def seen(self, name, readings, more=frozenset()):
-        """`SeenTest` of the chosen sensors and ``more``; None where no forces can be read."""
+        """`ReconstructedTest` of the chosen sensors and ``more``; None where no forces can be read."""
         structure, names = _with_sensors(self.structure, self.chosen | more), self.chosen | more
         readings = readings.sel(marker=[one for one in readings["marker"].values if one in names])
         if "channel" in readings.dims:
             kept = [one for one in readings["channel"].values if one.rpartition("-")[0] in names]
             readings = readings.sel(channel=kept) if kept else readings.drop_dims(["time_acc", "channel"])
         readings = until_fall(readings, find_fall(readings, structure, self.sensors))
-        if why_unseen(readings, structure):
+        if why_not_reconstructed(readings, structure):
             return None
-        return see_test(name, without_outliers(readings, structure), structure, self.sensors)
+        return reconstruct_test(name, without_outliers(readings, structure), structure, self.sensors)
 
 
 def _with_sensors(structure, names):
@@ -78,8 +78,8 @@ def _with_sensors(structure, names):
     return structure.with_mapping(mapping)
 
 
-def load_asked(structure, motions, sensors=None, duration=None):
-    """`Asked` of a structure, motions as ``NAME`` or ``NAME@SCALE``, and a file of sensors.
+def load_planned(structure, motions, sensors=None, duration=None):
+    """`PlannedCampaign` of a structure, motions as ``NAME`` or ``NAME@SCALE``, and a file of sensors.
 
     Without a file the sensors are those of the structure file; where that has none, four markers and an accelerometer
     on every body.
@@ -118,7 +118,7 @@ def load_asked(structure, motions, sensors=None, duration=None):
             raise InputError(Argument("motions"), entry, "expected every motion and scale once")
         scaled[test] = motion
         check_run(whole, motion, SOLVER, {}, None, duration or motion.duration, None)
-    return Asked(whole, noise, chosen, more, scaled, duration)
+    return PlannedCampaign(whole, noise, chosen, more, scaled, duration)
 
 
 def _motion(entry):

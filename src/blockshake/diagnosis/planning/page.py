@@ -11,7 +11,7 @@ from blockshake.pages.writing import write_html
 _SHOWN = 3  # pairs of an addition
 
 
-def write_plan(folder, asked, told, additions):
+def write_plan(folder, planned, detectable, additions):
     """Write ``plan.json`` and ``plan.html`` of what `plan_of` gave."""
     effects = {
         name: {
@@ -21,24 +21,24 @@ def write_plan(folder, asked, told, additions):
             "limits": one.limits,
             "told_apart": {rival: size for rival, size in one.apart.items() if rival},
         }
-        for name, one in told.items()
+        for name, one in detectable.items()
     }
     ranked = [
         {**one._asdict(), "separates": [[name, rival or "nothing"] for name, rival in one.separates]}
         for one in additions
     ]
-    tests = list(asked.motions)
-    plan = {"structure": asked.structure.file.name, "tests": tests, "effects": effects, "additions": ranked}
+    tests = list(planned.motions)
+    plan = {"structure": planned.structure.file.name, "tests": tests, "effects": effects, "additions": ranked}
     write_json(f"{folder}/plan.json", plan)
-    write_html(f"{folder}/plan.html", _document(asked, told, additions))
+    write_html(f"{folder}/plan.html", _document(planned, detectable, additions))
 
 
-def matrix_rows(told):
-    """Header and rows of the matrix: by rival, the size from which each effect is told from it."""
-    rivals = dict.fromkeys([None, *(rival for one in told.values() for rival in one.apart)])
-    rows = [("told from", *told)]
+def matrix_rows(detectable):
+    """Header and rows of the matrix: by rival, the size from which each effect is distinguished from it."""
+    rivals = dict.fromkeys([None, *(rival for one in detectable.values() for rival in one.apart)])
+    rows = [("distinguished from", *detectable)]
     for rival in rivals:
-        cells = [_cell(name, one, rival) for name, one in told.items()]
+        cells = [_cell(name, one, rival) for name, one in detectable.items()]
         rows.append(("nothing" if rival is None else name_of(rival), *cells))
     return rows
 
@@ -63,12 +63,12 @@ def addition_rows(additions):
     return rows
 
 
-def _document(asked, told, additions):
-    header, *rows = matrix_rows(told)
-    bodies = asked.structure.body_names
+def _document(planned, detectable, additions):
+    header, *rows = matrix_rows(detectable)
+    bodies = planned.structure.body_names
     places = "; ".join(
         f"{name_of(name)}: {named_place(one.place, bodies)}"
-        for name, one in told.items()
+        for name, one in detectable.items()
         if one.place != "all"
     )
     matrix = (
@@ -78,11 +78,13 @@ def _document(asked, told, additions):
             strong=True,
         ),
         Table(
-            f"Sizes from which each effect (column) is seen, and told from each rival (row), in nine of ten campaigns: "
+            f"Sizes from which each effect (column) is seen, and distinguished from each rival (row), in nine of ten "
+            f"campaigns: "
             f"averaged over {CAMPAIGNS} nominal campaigns and the noise of the sensors, with the needs and odds of the "
-            "diagnosis. Never: not within the prior of the size. Empty: it shows in other readings, and is told apart "
+            "diagnosis. Never: not within the prior of the size. Empty: it shows in other readings, and is "
+            "distinguished "
             f"as soon as it is seen. Where the tests tell least of it{f' ({places})' if places else ''}.",
-            ("Told from", *(sentence_case(name_of(name))[:-1] for name in header[1:])),
+            ("Distinguished from", *(sentence_case(name_of(name))[:-1] for name in header[1:])),
             tuple(rows),
             "l" * len(header),
         ),
@@ -98,8 +100,8 @@ def _document(asked, told, additions):
         (0.4, 0.1, 0.5),
     )
     sections = (
-        Section("Effects that are seen and told apart", "matrix", matrix),
+        Section("Effects that are seen and distinguished", "matrix", matrix),
         Section("One measurement more", "more", (more,)),
     )
-    subtitle = f"{asked.structure.file.name}, tests {', '.join(asked.motions)}"
+    subtitle = f"{planned.structure.file.name}, tests {', '.join(planned.motions)}"
     return numbered(Document("blockshake: plan of a campaign", subtitle, sections))

@@ -1,4 +1,5 @@
-"""The plan of a campaign: sizes from which effects are seen and told apart, and what one measurement more would add."""
+"""The plan of a campaign: sizes from which effects are seen and distinguished, and what one measurement more would
+add."""
 
 from typing import NamedTuple
 
@@ -17,14 +18,14 @@ _STRONGER = 1.25
 _SEPARATED = 0.5  # chance more, from which an addition is said to separate a pair
 
 
-class Told(NamedTuple):
+class Detectability(NamedTuple):
     """An effect of the plan."""
 
     place: str  # in words, where the tests tell least of it, of the places at which they tell it
     # str to float or None; by place, the size from which it is seen in nine of ten campaigns; None: not
     # within the prior
     limits: dict
-    # str to (float or None); by rival, the size from which it is told from that one there; under None that
+    # str to (float or None); by rival, the size from which it is distinguished from that one there; under None that
     # from which it is seen
     apart: dict
 
@@ -40,12 +41,12 @@ class Addition(NamedTuple):
     separates: tuple
 
 
-def plan_of(asked, progress):
-    """`Told` by effect, and `Addition` by falling number of pairs.
+def plan_of(planned, progress):
+    """`Detectability` by effect, and `Addition` by falling number of pairs.
 
     Parameters
     ----------
-    asked : Asked
+    planned : PlannedCampaign
     progress : callable
         Called with a line of text as the plan goes on.
 
@@ -54,24 +55,26 @@ def plan_of(asked, progress):
     InputError
         A test of which no forces can be read.
     """
-    campaigns, readings, tests = [], [], list(asked.motions)
+    campaigns, readings, tests = [], [], list(planned.motions)
     for number in range(CAMPAIGNS):
         progress(f"nominal campaign {number + 1} of {CAMPAIGNS}")
         draws = range(number * len(tests), (number + 1) * len(tests))
-        readings.append({test: asked.simulated(test, draw) for test, draw in zip(tests, draws, strict=True)})
-        campaigns.append(_campaign(asked, readings[-1]))
-    told = {}
+        readings.append(
+            {test: planned.simulated(test, draw) for test, draw in zip(tests, draws, strict=True)}
+        )
+        campaigns.append(_campaign(planned, readings[-1]))
+    detectable = {}
     for name in dict.fromkeys(name for one in campaigns for name in one.limits if one.limits[name]):
         progress(f"{name} against its rivals")
-        told[name] = _told(name, campaigns)
-    if not told:
+        detectable[name] = _detectability(name, campaigns)
+    if not detectable:
         raise InputError(
-            asked.structure.source, "markers",
+            planned.structure.source, "markers",
             "expected sensors that show the pose of every block, such as three markers that are not on a line; these "
             "show no effect of any size",
         )  # fmt: skip
     few, readings = campaigns[:OF_ADDITIONS], readings[:OF_ADDITIONS]
-    before, additions = _of_visible(few, told), []
+    before, additions = _of_visible(few, detectable), []
 
     def add(words, after):
         gained = gained_chances(before, after)
@@ -79,18 +82,18 @@ def plan_of(asked, progress):
         additions.append(Addition(words, sum(gained.values()), tuple(most)))
 
     for static in static_tests(few[0].seen[0]):
-        add(static.words, _of_visible(few, told, static))
-    for words, names in asked.more.items():
+        add(static.words, _of_visible(few, detectable, static))
+    for words, names in planned.more.items():
         progress(words)
-        add(words, _of_visible([_campaign(asked, one, names) for one in readings], told))
+        add(words, _of_visible([_campaign(planned, one, names) for one in readings], detectable))
     for test in tests:
         words = f"{test} times {_STRONGER:g}"
         progress(words)
         draws = range(CAMPAIGNS * len(tests), CAMPAIGNS * len(tests) + OF_ADDITIONS)
-        more = [asked.simulated(test, draw, _STRONGER) for draw in draws]
-        longer = [_campaign(asked, {**one, words: test}) for one, test in zip(readings, more, strict=True)]
-        add(words, _of_visible(longer, told))
-    return told, sorted(additions, key=lambda one: (-one.pairs, one.words))
+        more = [planned.simulated(test, draw, _STRONGER) for draw in draws]
+        longer = [_campaign(planned, {**one, words: test}) for one, test in zip(readings, more, strict=True)]
+        add(words, _of_visible(longer, detectable))
+    return detectable, sorted(additions, key=lambda one: (-one.pairs, one.words))
 
 
 def gained_chances(before, after):
@@ -98,15 +101,15 @@ def gained_chances(before, after):
     return {pair: max(0.0, chance - before.get(pair, 0.0)) for pair, chance in after.items()}
 
 
-def _campaign(asked, readings, more=frozenset()):
-    seen = [asked.seen(name, test, more) for name, test in readings.items()]
+def _campaign(planned, readings, more=frozenset()):
+    seen = [planned.seen(name, test, more) for name, test in readings.items()]
     if None in seen:
         expected = "expected convex blocks that touch, and tests of more than a second that they survive"
-        raise InputError(asked.structure.source, "", expected)
+        raise InputError(planned.structure.source, "", expected)
     return NominalCampaign(seen)
 
 
-def _told(name, campaigns):
+def _detectability(name, campaigns):
     places = dict.fromkeys(place for one in campaigns for place in one.limits.get(name, ()))
     grid, limits = largest(name) * _GRID, {}
     for place in places:
@@ -123,7 +126,7 @@ def _told(name, campaigns):
         {key: None if size is None else from_null(name, size) for key, size in sizes.items()}
         for sizes in (limits, apart)
     )
-    return Told(place, *shown)
+    return Detectability(place, *shown)
 
 
 def _first(sizes, chances):
@@ -138,10 +141,10 @@ def _first(sizes, chances):
     return float(sizes[first - 1] ** (1.0 - share) * sizes[first] ** share)
 
 
-def _of_visible(campaigns, told, static=None):
+def _of_visible(campaigns, detectable, static=None):
     """Chances by effect, of its visible size, and rival."""
     chances = {}
-    for name, one in told.items():
+    for name, one in detectable.items():
         first = EFFECTS[name].parameters[0]
         for rival, chance in _chances(
             name, one.place, abs(first.visible - first.null), campaigns, static

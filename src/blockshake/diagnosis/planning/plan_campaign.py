@@ -4,9 +4,9 @@ import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from blockshake.diagnosis.planning.nominal_tests import load_asked
+from blockshake.diagnosis.planning.nominal_tests import load_planned
 from blockshake.diagnosis.planning.page import matrix_rows, write_plan
-from blockshake.diagnosis.planning.plan import Addition, Told, plan_of
+from blockshake.diagnosis.planning.plan import Addition, Detectability, plan_of
 from blockshake.files import AnyPath, check_output
 from blockshake.tables.shown import Shown
 
@@ -16,7 +16,7 @@ class CampaignPlan(Shown):
     """Sizes from which a campaign tells causes apart, and measurements that would add to it."""
 
     structure: str
-    effects: dict[str, Told]
+    effects: dict[str, Detectability]
     additions: list[Addition]  # the one that separates most pairs first
 
     def _words(self) -> str:
@@ -35,7 +35,7 @@ def plan_campaign(
 ) -> CampaignPlan:
     """Compute which causes motions and sensors would tell apart, and what one measurement more adds.
 
-    Simulates nominal tests; the log says how far it is.
+    Simulates nominal tests; the log states how far it is.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def plan_campaign(
     sensors : str or path, optional
         File of sensors and their noise; by default those of the structure, or usual ones where it has none.
     duration : float, optional
-        Of every test; by default its motion's [s].
+        For every test; by default its motion's [s].
 
     Returns
     -------
@@ -67,7 +67,7 @@ def plan_campaign(
     True
     """
     check_output(f"{output}/plan.json")
-    asked = load_asked(structure, motions, sensors, duration)
-    told, additions = plan_of(asked, logging.getLogger("blockshake").info)
-    write_plan(output, asked, told, additions)
-    return CampaignPlan(asked.structure.file.name, told, additions)
+    planned = load_planned(structure, motions, sensors, duration)
+    detectable, additions = plan_of(planned, logging.getLogger("blockshake").info)
+    write_plan(output, planned, detectable, additions)
+    return CampaignPlan(planned.structure.file.name, detectable, additions)

@@ -42,7 +42,7 @@ class NominalCampaign:
     def chances(self, name, place, size, static=None):
         """Chance to see an effect as far from its null value, under None, and to tell it from each rival, by name.
 
-        ``static`` is a `StaticTest` that is made beside. Rivals that show in other readings are left out.
+        ``static`` is a `StaticTest` that is made with. Rivals that show in other readings are left out.
         """
         first, *others = EFFECTS[name].parameters
         true = {first.name: from_null(name, size)} | {one.name: one.null for one in others}

@@ -3,7 +3,13 @@
 import numpy as np
 
 from blockshake.diagnosis.gain.section import drift_figure
-from blockshake.diagnosis.report.statement import changed, not_told, sensor_faults, statement, until_then
+from blockshake.diagnosis.report.statement import (
+    changed,
+    not_distinguished,
+    sensor_faults,
+    statement,
+    until_then,
+)
 from blockshake.diagnosis.wording import NO_ERROR, chance_words, estimate_words, name_of, percent_words
 from blockshake.effects.registry import title_of
 from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
@@ -31,7 +37,7 @@ _MANY = 200  # points, from which on they are small
 
 def answer_section(diagnosed):
     """The answer in two sentences, its numbers, what to do next and until then; the forces measured and explained."""
-    verdict, sentences = diagnosed.verdict, [*not_told(diagnosed), *changed(diagnosed)]
+    verdict, sentences = diagnosed.verdict, [*not_distinguished(diagnosed), *changed(diagnosed)]
     blocks = [Box(statement(diagnosed), _facts(diagnosed)), *map(Text, sentences)]
     if diagnosed.synthetic:
         blocks.append(Text(_ANSWER.synthetic(), strong=True))

@@ -85,6 +85,6 @@ def load_diagnosed(campaign, results, effort, track_record):
 
 
 def _synthetic(attributes):
-    """Whether a test file says of itself that it is synthetic: by this program's mark, its title or its source."""
+    """Whether a test file states of itself that it is synthetic: by this program's mark, its title or its source."""
     words = f"{attributes.get('title', '')} {attributes.get('source', '')}".lower()
     return bool(attributes.get("synthetic", 0)) or "synthetic" in words

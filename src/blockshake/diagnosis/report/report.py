@@ -42,7 +42,7 @@ def make_diagnosis_report(campaign, results, effort, track_record, html, pdf):
         Folder with its ``verdict.json`` and what that rests on.
     effort : str
     track_record : str or path
-        The procedure's track record; without one the report says so.
+        The procedure's track record; without one the report states it.
     html, pdf : str or path
         To write, each whole or not at all. Same results, same bytes.
 

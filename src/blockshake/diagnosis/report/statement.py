@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.diagnosis.answer.thresholds import ODDS
-from blockshake.diagnosis.verdict.ladder import NOT_JUDGED, NOTHING, ONE_OF, UNKNOWN
+from blockshake.diagnosis.verdict.grade import NOT_JUDGED, NOTHING, ONE_OF, UNKNOWN
 from blockshake.diagnosis.wording import (
     beyond,
     cause_words,
@@ -22,7 +22,7 @@ from blockshake.pages.words import Words
 _MOST_PLACES = 4
 _KINDS = {NOTHING: "nothing", NOT_JUDGED: "not judged", UNKNOWN: "unknown", ONE_OF: "one of"}
 _STATED = Words(__name__)
-RATIO = round(np.exp(ODDS))  # of odds, within which causes are not told apart
+RATIO = round(np.exp(ODDS))  # of odds, within which causes are not distinguished
 
 
 def statement(diagnosed):
@@ -104,20 +104,20 @@ def changed(diagnosed):
     return [sentence_case(history_words(path)) for path in diagnosed.decision.histories if path.changes]
 
 
-def not_told(diagnosed):
+def not_distinguished(diagnosed):
     """Sentences on what the tests do not tell from the answer, one a part of the readings."""
     decision = diagnosed.decision
     if not decision.parts:
         limits = [f"{title_of(name)} {beyond(name, size)}" for name, size in decision.excluded_above.items()]
         return [_STATED.smaller(limits)]
-    return [_not_told_from(diagnosed, part) for part in decision.parts]
+    return [_not_distinguished_from(diagnosed, part) for part in decision.parts]
 
 
-def _not_told_from(diagnosed, part):
+def _not_distinguished_from(diagnosed, part):
     first, *others = part.causes
     tried = {name: odds for name, odds in part.odds.items() if odds >= ODDS}
     nearest = min(tried, key=tried.get, default=None)
-    words = _STATED.not_told(
+    words = _STATED.not_distinguished(
         part=part.readings if len(diagnosed.decision.parts) > 1 else "",
         first=first.title,
         others=[f"{one.title} ({times_words(one.odds)})" for one in others],

@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.diagnosis.answer.decision import Estimate
 from blockshake.diagnosis.answer.size import NINE_TENTHS
-from blockshake.diagnosis.verdict.ladder import rung
+from blockshake.diagnosis.verdict.grade import grade
 from blockshake.diagnosis.verdict.verdict import MeasuredGain, Misfit, Outside, Verdict
 from blockshake.diagnosis.wording import history_words
 from blockshake.effects.registry import EFFECTS
@@ -33,7 +33,7 @@ def conclude(decision, findings, kinds, caveats=(), measured=None, judged=None):
 
     Notes
     -----
-    A sensor fault beside what acts in the forces, an effect or a form from outside, is a combination: the fault was
+    A sensor fault next to what acts in the forces, an effect or a form from outside, is a combination: the fault was
     corrected first. The entry of a fault in ``probabilities`` is 1 less the chance of the parity check. Causes that
     gain nothing on the tests to select by stay named, and the model with them is not proposed.
     """
@@ -43,7 +43,7 @@ def conclude(decision, findings, kinds, caveats=(), measured=None, judged=None):
     caveats += [decision.impacts] if decision.impacts else []
     if sensors and kind != "ambiguous":
         kind = "combination" if decision.parts or len(sensors) > 1 else "named"
-    word, missing = rung(kind, decision, bool(sensors), measured)
+    word, missing = grade(kind, decision, bool(sensors), measured)
     named = {one.name: one for one in decision.causes}
     places = {name: one.location for name, one in sensors.items()}
     places |= {
@@ -79,20 +79,20 @@ def conclude(decision, findings, kinds, caveats=(), measured=None, judged=None):
 
 
 def _caveats(decision):
-    """Lines on rivals, forms beside the causes, sizes that change, and tests that tell nothing."""
+    """Lines on rivals, forms given the causes, sizes that change, and tests that tell nothing."""
     for part in decision.parts:
         names = [cause.title for cause in part.causes]
         if len(names) > 1:
             yield f"{' or '.join(names)}: the tests do not tell these apart"
         elif part.forms and decision.causes:
-            yield f"beside the causes something acts that no effect of the registry is: {names[0]}"
+            yield f"given the causes something acts that no effect of the registry is: {names[0]}"
     yield from (history_words(path) for path in decision.histories if path.changes)
     if decision.silent:
         yield f"no joint was seen to turn, slip or lift in {', '.join(decision.silent)}"
 
 
 def _outside(forms):
-    """`Outside` of the likeliest form; None without one."""
+    """`Outside` of the most probable form; None without one."""
     if not forms:
         return None
     first, when = forms[0], forms[0].when
@@ -110,7 +110,7 @@ def _outside(forms):
 
 
 def _misfit(decision, sensors):
-    """The smaller chance of readings like these: with sound sensors, or without a cause."""
+    """p-value of the readings: the smaller of that with faultless sensors and that without a cause."""
     first = min(sensors.values(), key=lambda cause: cause.p, default=None)
     if first is None or first.p >= decision.p:
         return Misfit(p=decision.p, where=decision.where)
@@ -121,7 +121,7 @@ def _misfit(decision, sensors):
 def _next_test(measurements, causes):
     """The measurements that would split the sets, or the one by which the registry tells the causes from others."""
     ranked = [f"{one.test} (splits {100.0 * one.share:.0f} % of such cases)" for one in measurements]
-    known = dict.fromkeys(EFFECTS[name].told_apart_by for name in causes[:2] if name in EFFECTS)
+    known = dict.fromkeys(EFFECTS[name].distinguished_by for name in causes[:2] if name in EFFECTS)
     return "; ".join(ranked or known) or None
 
 

@@ -17,7 +17,8 @@ from blockshake.store import load_made
 
 
 class Found(NamedTuple):
-    """Verdict, decision, evidence beside what was measured, and scores on sealed tests (None where none were measured).
+    """Verdict, decision, evidence against what was measured, and scores on sealed tests (None where none were
+    measured).
 
     ``folder`` is that of the results.
     """
@@ -51,7 +52,7 @@ def cause_words(cause, title):
 def odds_section(decision, titles, readings):
     """Odds and gains of all rivals, one table a cause; None where nothing acts.
 
-    ``titles`` has the words for a cause by its name, and ``readings`` says what the odds rest on.
+    ``titles`` has the words for a cause by its name, and ``readings`` states what the odds rest on.
     """
     blocks = []
     for part in decision.parts:
@@ -61,8 +62,8 @@ def odds_section(decision, titles, readings):
         )
         blocks.append(
             Table(
-                f"How many times less likely each cause is than {titles[part.causes[0].name]}, the likeliest, by "
-                f"{readings} alone, and its gain over nothing [nats].",
+                f"How many times less likely each cause is than {titles[part.causes[0].name]}, the most probable, by "
+                f"{readings} alone, and its log Bayes factor over no cause [nats].",
                 ("Cause", "Less likely", "Gain"), rows, "lrr",
             )
         )  # fmt: skip
@@ -71,8 +72,8 @@ def odds_section(decision, titles, readings):
 
 def _less_likely(part, name):
     if name == part.causes[0].name:
-        return "the likeliest"
-    return "not told apart" if part.odds[name] < ODDS else times_words(part.odds[name])
+        return "the most probable"
+    return "not distinguished" if part.odds[name] < ODDS else times_words(part.odds[name])
 
 
 def document(campaign, effort, found, subtitle, sections):

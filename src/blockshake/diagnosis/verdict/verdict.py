@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field, JsonValue, model_validator
 
 from blockshake.diagnosis.answer.decision import Cause, Estimate, History, Measurement
-from blockshake.diagnosis.verdict.ladder import ESTABLISHED, NOTHING, ONE_OF, PROBABLE, UNKNOWN
+from blockshake.diagnosis.verdict.grade import ESTABLISHED, NOTHING, ONE_OF, PROBABLE, UNKNOWN
 from blockshake.files import load_json, write_json
 from blockshake.statistics.resampling import limits_of
 from blockshake.tables.shown import Shown
@@ -80,20 +80,20 @@ class Misfit(Strict):
 
 
 class Outside(Strict):
-    """The likeliest form of a cause that no effect of the registry is."""
+    """The most probable form of a cause that no effect of the registry is."""
 
     form: str
     title: str = Field(description="in words")
     place: dict[str, JsonValue] = Field(
         description="{body: name, height: share of its own} or {joint: [lower, upper]}"
     )
-    places: tuple[str, ...] = Field(description="in words, all that cannot be told from it")
+    places: tuple[str, ...] = Field(description="in words, all that cannot be distinguished from it")
     size: dict[str, Estimate] = Field(description="by name of the size")
     starts: dict[str, Finite] = Field(description="by test, of a form that starts [s]")
 
 
 class Verdict(Shown, Strict):
-    """The whole file; `Verdict` in docs/guide/contracts.md says what each field holds."""
+    """The whole file; `Verdict` in docs/guide/contracts.md states what each field holds."""
 
     version: Literal[VERSION] = VERSION  # type: ignore[valid-type]
     decision: Literal["none", "named", "ambiguous", "combination", "unknown"]
@@ -117,7 +117,8 @@ class Verdict(Shown, Strict):
     next_tests: tuple[Measurement, ...] = ()
     extension: tuple[Cause, ...] = Field(
         (),
-        description="the likeliest cause of every part, by which a study is extended; empty where they gain nothing on "
+        description="the most probable cause of every part, by which a study is extended; empty where they gain "
+        "nothing on "
         "the tests to select by",
     )
     histories: tuple[History, ...] = Field((), description="sizes from test to test")

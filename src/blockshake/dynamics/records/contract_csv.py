@@ -118,12 +118,12 @@ def _check_header(header, where):
     if len(kinds) > 1:
         raise InputError(where, "", f"expected columns of one kind, found {' and '.join(kinds)}")
     if header == ["time_s"]:
-        raise InputError(where, "", "expected at least one column of motion beside time_s")
+        raise InputError(where, "", "expected at least one column of motion with time_s")
     return kinds[0] if kinds else "displacement"
 
 
 def write_motion_csv(motion, path):
-    """Write a motion as the project's CSV, in the kind it came from, with all its digits; its attributes beside it.
+    """Write a motion as the project's CSV, in the kind it came from, with all its digits; its attributes with it.
 
     Channels that never move are left out (``x`` stays when all rest). Read again, the file gives
     the same displacement from its first row: a constant offset of a motion integrated from
@@ -154,10 +154,10 @@ def write_motion_csv(motion, path):
 
 
 def kept_attributes(path, text):
-    """Attributes that `write_motion_csv` left beside a file of this text; none where the text is another."""
-    beside = Path(f"{path}{METADATA}")
+    """Attributes that `write_motion_csv` left next to a file of this text; none where the text is another."""
+    metadata = Path(f"{path}{METADATA}")
     with contextlib.suppress(InputError, AttributeError, KeyError):
-        kept = load_json(beside) if beside.is_file() else {}
+        kept = load_json(metadata) if metadata.is_file() else {}
         if kept.get("csv") == content_digest(text.encode()):
             attributes = kept["attributes"].items()
             return {name: value for name, value in attributes if isinstance(value, (str, int, float))}

@@ -1,7 +1,7 @@
 """COSMOS strong-motion format 1.20, volume 2: text, integer and real headers, then fixed columns.
 
 Facts of the format: COSMOS Strong Motion Data Format, version 1.20 (2001), tables 5 to 8. Each block is
-announced by a line that says how many values follow and in which Fortran format.
+announced by a line that states how many values follow and in which Fortran format.
 """
 
 import re

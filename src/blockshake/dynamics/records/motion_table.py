@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from blockshake.dynamics.baseline import settle
+from blockshake.dynamics.baseline import correct_baseline
 from blockshake.dynamics.motion import CHANNELS, check_finite, ground_motion
 from blockshake.dynamics.records.times import check_times, gap_words
 from blockshake.errors import Argument, InputError
@@ -27,10 +27,10 @@ def load_motion_table(source, layout, time, columns, unit, time_unit, baseline, 
         By channel (``x``, ``y``, ``z``) the name of a column, behind a minus where it is reversed; none, with ``step``,
         takes all values of the file, line by line, as x.
     unit : str
-        Of the columns; tells acceleration, velocity and displacement apart.
+        For the columns; tells acceleration, velocity and displacement apart.
     time_unit : str
     baseline : str or float
-        As of `settle`: a table is corrected with a corner frequency alone.
+        As of `correct_baseline`: a table is corrected with a corner frequency alone.
     step : float, optional
         Between rows, or values, that have no times [s].
 
@@ -80,7 +80,7 @@ def load_motion_table(source, layout, time, columns, unit, time_unit, baseline, 
     with np.errstate(over="ignore", invalid="ignore"):  # looked at below
         motion = ground_motion(Path(source).stem, at - at[0], read, kind, attributes)
     check_finite(motion, where)
-    return settle(motion, baseline, where)
+    return correct_baseline(motion, baseline, where)
 
 
 def _finite(table, name, values):

@@ -25,9 +25,9 @@ class Record:
     time_step: float  # [s]
     format: str  # name of the file format
     checked: str  # entries of the header that were held against the values
-    assumed: str = ""  # what the file does not say; empty where it says all
+    assumed: str = ""  # what the file does not say; empty where it states all
     channel: str = ""  # name of the component; empty where the format holds a single one
-    # str to str; what the header says of event, station and processing; ``licence`` where stated
+    # str to str; what the header states of event, station and processing; ``licence`` where stated
     metadata: dict = field(default_factory=dict)
 
     def turned(self, axis, sign):
@@ -38,7 +38,7 @@ class Record:
         return replace(self, acceleration=-self.acceleration + 0.0, assumed=assumed)
 
     def vertical(self):
-        """The text by which the file says that the component is vertical; empty where it does not.
+        """The text by which the file states that the component is vertical; empty where it does not.
 
         The direction is a channel's name, a stream, or what follows the last comma of an event.
         """
@@ -179,7 +179,7 @@ def chosen_records(records, channels, where):
     Parameters
     ----------
     records : list of Record
-        Of one file.
+        One file.
     channels : dict of str to str, or None
         By axis (``x``, ``y``, ``z``) the name of a channel, or its number in the file, from 1, behind a minus where it
         is reversed; None takes the only one as x.

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.effects.effect import Columns, Effect, EffectParameter
+from blockshake.effects.effect import DesignMatrix, Effect, EffectParameter
 from blockshake.effects.places import nowhere
 from blockshake.forces.seen.wrench_histories import friction_against_slip
 
@@ -22,7 +22,7 @@ def _columns(seen, place):
     for index, face in enumerate(seen.faces):
         towards = seen.states.slip[seen.rows.instant, index]
         rows += face.friction * towards * seen.rows.along(friction_against_slip(seen, index))
-    return [Columns({}, rows[:, None], (_SCALE,), False, 1.0)]
+    return [DesignMatrix({}, rows[:, None], (_SCALE,), False, 1.0)]
 
 
 EFFECT = Effect(
@@ -33,7 +33,7 @@ EFFECT = Effect(
     source="Coulomb, for each direction",
     parameters=(EffectParameter("asymmetry", "1", "of the coefficient", 0.0, -0.5, 0.5, 0.3),),
     confused_with=("eccentricity",),
-    told_apart_by="a test with the motion reversed; a jack that pushes the block to either side",
+    distinguished_by="a test with the motion reversed; a jack that pushes the block to either side",
     places=nowhere,
     act=_act,
     columns=_columns,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.effects.effect import Columns, Effect, EffectParameter
+from blockshake.effects.effect import DesignMatrix, Effect, EffectParameter
 from blockshake.effects.places import nowhere
 from blockshake.forces.seen.wrench_histories import friction_against_slip, slips_early
 
@@ -25,7 +25,7 @@ def with_drop(experiment, values, along):
 
 
 def drop_columns(seen, history, scales):
-    """`Columns` of the friction that all joints lose, by ``history`` (n_times, n_joints) over each of some scales.
+    """`DesignMatrix` of the friction that all joints lose, by ``history`` (n_times, n_joints) over each of some scales.
 
     A joint that begins to slip at less than half of its friction has not lost it by this law.
     """
@@ -35,7 +35,7 @@ def drop_columns(seen, history, scales):
     ]
     drops = (1.0 - np.exp(-history[seen.rows.instant] / scale) for scale in scales)
     return [
-        Columns(
+        DesignMatrix(
             {"scale": scale}, -(np.stack(full, axis=1) * drop).sum(axis=1)[:, None], (_SCALE,), True, _MOST
         )
         for scale, drop in zip(scales, drops, strict=True)
@@ -59,7 +59,7 @@ EFFECT = Effect(
         EffectParameter("scale", "m/s", "slip rate at which 63 % of it is lost", 0.01, 0.001, 0.1, 0.01),
     ),
     confused_with=("weak-joint", "slip-weakening-friction"),
-    told_apart_by="sine tests of one acceleration and several frequencies, which slip at several rates",
+    distinguished_by="sine tests of one acceleration and several frequencies, which slip at several rates",
     places=nowhere,
     act=lambda experiment, values, place: with_drop(experiment, values, "rate"),
     columns=lambda seen, place: drop_columns(seen, np.abs(seen.joints.slip_rate), _RATES),

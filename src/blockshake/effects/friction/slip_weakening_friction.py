@@ -26,7 +26,7 @@ EFFECT = Effect(
         EffectParameter("scale", "m", "slip after which 63 % of it is lost", 0.01, 0.001, 0.1, 0.01),
     ),
     confused_with=("weak-joint", "rate-weakening-friction"),
-    told_apart_by="sine tests of one rate and many cycles: the coefficient falls from cycle to cycle",
+    distinguished_by="sine tests of one rate and many cycles: the coefficient falls from cycle to cycle",
     places=nowhere,
     act=lambda experiment, values, place: with_drop(experiment, values, "slip"),
     columns=_columns,

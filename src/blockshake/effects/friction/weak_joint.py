@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.effects.effect import Columns, Effect, EffectParameter
+from blockshake.effects.effect import DesignMatrix, Effect, EffectParameter
 from blockshake.effects.places import face_of, joints, stated_joint
 from blockshake.forces.seen.wrench_histories import friction_against_slip
 
@@ -18,7 +18,7 @@ def _act(experiment, values, place):
 def _columns(seen, place):
     face = face_of(seen, place)
     lost = -seen.faces[face].friction * seen.rows.along(friction_against_slip(seen, face))
-    return [Columns({}, lost[:, None], (_SCALE,), True, 1.0)]
+    return [DesignMatrix({}, lost[:, None], (_SCALE,), True, 1.0)]
 
 
 EFFECT = Effect(
@@ -29,7 +29,7 @@ EFFECT = Effect(
     source="Coulomb",
     parameters=(EffectParameter("factor", "1", "on the coefficient of friction", 1.0, 0.1, 1.0, 0.25),),
     confused_with=("rate-weakening-friction",),
-    told_apart_by="slip of each joint in a test that exceeds r mu g",
+    distinguished_by="slip of each joint in a test that exceeds r mu g",
     places=joints,
     act=_act,
     columns=_columns,

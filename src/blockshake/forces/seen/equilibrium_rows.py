@@ -161,7 +161,7 @@ def equilibrium_rows(frames, states, motion, required, free, known=True):
     Notes
     -----
     The wrenches that the faces may carry span a space at each instant: any wrench where a face is closed; no moment
-    about an edge on which it has turned; no shear beside friction where it slips; nothing where it is lifted. The rows
+    about an edge on which it has turned; no shear with friction where it slips; nothing where it is lifted. The rows
     are an orthonormal basis of what is orthogonal to it: the equations of virtual work of the mechanism that the turned
     joints make, whatever the statical indeterminacy of the others. A direction of a body that no sensor reads is free
     like a joint's force, and so is all of a body whose motion is unknown.

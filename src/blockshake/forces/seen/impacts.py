@@ -34,7 +34,7 @@ class Impact:
 
 
 def find_impacts(seen):
-    """`Impact` of a `SeenTest`, a list by joint and time.
+    """`Impact` of a `ReconstructedTest`, a list by joint and time.
 
     A joint is left out where the bodies above stand on another joint too: its impulse is not known.
 
@@ -147,7 +147,7 @@ class _Bodies:
 
     @cached_property
     def inertia_of_each(self):
-        """Of every body about its mass centre, world frame, (n_above, 3, 3) [kg m2]."""
+        """For every body about its mass centre, world frame, (n_above, 3, 3) [kg m2]."""
         turn = self.seen.motion.rotation[self.now, self.above]
         return turn @ self.seen.structure.inertia[self.above] @ np.swapaxes(turn, -1, -2)
 

@@ -36,7 +36,8 @@ class PointRows:
 
 
 def point_rows(seen, body, height):
-    """`PointRows` of a point of a `SeenTest`, above a body's mass centre by ``height``, over the body's height [1]."""
+    """`PointRows` of a point of a `ReconstructedTest`, above a body's mass centre by ``height``, over the body's height
+    [1]."""
     index = seen.structure.body_names.index(body)
     solid = seen.structure.solids[seen.structure.file.bodies[index].shape]
     above = height * float(np.ptp(solid.vertices[:, 2]))

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from blockshake.forces.seen.seen_test import see_test, why_unseen
+from blockshake.forces.seen.reconstructed_test import reconstruct_test, why_not_reconstructed
 from blockshake.geometry.schema import AXES
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_test
-from blockshake.measurement.campaigns.starting_places import standing
+from blockshake.measurement.campaigns.initial_poses import initial_poses
 from blockshake.measurement.motion.body_frame import without_outliers
 from blockshake.measurement.motion.body_poses import PLANAR, POSE, body_poses
 
@@ -23,15 +23,17 @@ def sight_lines(campaign):
     if name is None:
         return []
     test = load_test(campaign, name, structure)
-    structure = standing(structure, test)
+    structure = initial_poses(structure, test)
     test = without_outliers(test, structure)
     start = float(test["time"][0])
     test = test.isel(time=test["time"].to_numpy() < start + _LONGEST)
     if "time_acc" in test.dims:
         test = test.isel(time_acc=test["time_acc"].to_numpy() < start + _LONGEST)
-    if hindrance := why_unseen(test, structure) or _unread(test, structure, campaign.sensors.marker_noise):
+    if hindrance := why_not_reconstructed(test, structure) or _unread(
+        test, structure, campaign.sensors.marker_noise
+    ):
         return [f"joint forces: none, {hindrance}"]
-    seen = see_test(name, test, structure, campaign.sensors)
+    seen = reconstruct_test(name, test, structure, campaign.sensors)
     if not seen.tree:
         return ["joint forces: sums over the joints that turn, the lever of none: more joints than blocks"]
     errors = np.nanmedian(seen.forces.moment_error / np.abs(seen.forces.force[..., 2]), axis=0)

@@ -16,7 +16,7 @@ def edge_inward(seen, face, tangent=0, edge=0):
 
     Parameters
     ----------
-    seen : SeenTest
+    seen : ReconstructedTest
     face : int
     tangent : int
         Along which the edge lies off the middle.
@@ -109,8 +109,8 @@ def mass_centre_off(seen, body, axis=0):
 def heavier(seen, body, height=0.0):
     """Effect on the balance of a body of twice the mass, what is added at a height above its mass centre [m].
 
-    By `SeenTest.balanced`: the noise of the rows is not in it, nor then the readings themselves where all bodies, or
-    those that turn as one, are heavier alike.
+    By `ReconstructedTest.balanced`: the noise of the rows is not in it, nor then the readings themselves where all
+    bodies, or those that turn as one, are heavier alike.
     """
     motion, wrench, mass = seen.motion, seen.balanced[:, body], seen.structure.mass[body]
     arm, spin = height * motion.rotation[:, body, :, 2], motion.angular_velocity[:, body]
@@ -129,14 +129,14 @@ def force_at(seen, body, force, height=0.0, arm=None):
 
     Parameters
     ----------
-    seen : SeenTest
+    seen : ReconstructedTest
     body : int
     force : float64 array, shape (n_times, 3) or (3,)
         World frame [N].
     height : float
-        Of its point above the mass centre along the body's z axis [m].
+        Its point above the mass centre along the body's z axis [m].
     arm : float64 array, shape (n_times, 3), optional
-        Of its point from the mass centre in place of that, world frame [m].
+        For its point from the mass centre in place of that, world frame [m].
     """
     arm = height * seen.motion.rotation[:, body, :, 2] if arm is None else arm
     force = np.broadcast_to(force, arm.shape)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blockshake.jit import borrowing_kernel, inner_kernel, kernel
+from blockshake.jit import inner_kernel, kernel, kernel_without_allocation
 
 _BLOCK = 8  # points along the edge of the blocks in which far triangles are left out
 # Features of a triangle ABC, rows of its pseudonormals
@@ -69,12 +69,12 @@ def _pseudonormals(corners, faces, n_vertices):
     return np.concatenate([unit[:, None], at_edge[edge], at_vertex[faces]], axis=1)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _dot(ax, ay, az, bx, by, bz):
     return ax * bx + ay * by + az * bz
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _nearest_on_triangle(triangle, px, py, pz):
     """Vector from the nearest point of a triangle (3, 3) to a point, and the feature it lies on.
 

@@ -53,7 +53,7 @@ def perimeter_points(vertices, normals, sides, area, spacing, inset):
     sides : list
         The part's edges, from `boundaries`.
     area : float
-        Of the part [m2].
+        The part [m2].
     spacing, inset : float
         Those of `mesh_nodes`.
 

@@ -16,22 +16,22 @@ def motion_in_folder(motion, folder):
         return motion
     for suffix in ("", METADATA):
         if not suffix or Path(f"{motion}{suffix}").is_file():
-            copy_beside(f"{motion}{suffix}", folder / f"{Path(motion).name}{suffix}")
+            copy_unless_same(f"{motion}{suffix}", folder / f"{Path(motion).name}{suffix}")
     return Path(motion).name
 
 
 def structure_in_folder(structure, loaded, folder):
-    """Name of the structure in the campaign: a shipped name, or the file copied to the folder, meshes beside it."""
+    """Name of the structure in the campaign: a shipped name, or the file copied to the folder, meshes with it."""
     if structure in shipped_names("structures"):
         return structure
     meshes = [shape.mesh for shape in loaded.file.shapes.values() if shape.mesh]
-    copy_beside(structure, folder / "structure.yaml")
+    copy_unless_same(structure, folder / "structure.yaml")
     for mesh in meshes:
-        copy_beside(Path(structure).parent / mesh, folder / mesh)
+        copy_unless_same(Path(structure).parent / mesh, folder / mesh)
     return "structure.yaml"
 
 
-def copy_beside(source, target):
+def copy_unless_same(source, target):
     """Copy a file to a path, unless it is that file."""
     if Path(source).resolve() != target.resolve():
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -51,7 +51,7 @@ def write_campaign_file(folder, header, name, structure, sensors, tests):
     sensors : dict
         Standard deviations.
     tests : sequence of dict
-        Of which the keys that the file has are taken.
+        Which the keys that the file has are taken.
     """
     keys = ("name", "file", "motion", "scale", "baseline", "role")
     mapping = {

@@ -59,8 +59,8 @@ def command_start(time, moved, command):
     rows = np.arange(0.0, command.duration + _COARSE, _COARSE)
     displacement = command.evaluate(rows)[:, 0]
 
-    def correlation(asked):
-        gained = asked(grid + _SPAN) - asked(grid)
+    def correlation(signal):
+        gained = signal(grid + _SPAN) - signal(grid)
         gained = gained - gained.mean()
         size = np.sqrt((gained @ gained) * (read @ read))
         return gained @ read / size if size > 0.0 else 0.0
@@ -136,7 +136,7 @@ def simulation_start(time):
     Parameters
     ----------
     time : float64 array, shape (n_times,)
-        Of the markers, from the start of the command on [s].
+        For the markers, from the start of the command on [s].
 
     Returns
     -------
@@ -197,8 +197,9 @@ def _even(time, digit):
 def on_one_clock(test, structure):
     """The test with the recorder's times moved to where the slab's accelerometer reads what its markers do.
 
-    The attribute ``recorder_late`` says by how much the times were too late [s], where they were moved. The test stays
-    as it was read where the slab has no accelerometer along x, and where both agree within 0.1 s already, or at no lag.
+    The attribute ``recorder_late`` states by how much the times were too late [s], where they were moved. The test
+    stays as it was read where the slab has no accelerometer along x, and where both agree within 0.1 s already, or at
+    no lag.
 
     Notes
     -----

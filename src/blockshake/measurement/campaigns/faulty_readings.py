@@ -7,9 +7,9 @@ import numpy as np
 from blockshake.measurement.sensors.accelerometers import channel_carriers
 from blockshake.measurement.sensors.markers import marker_bodies
 
-LEVEL = 1e-3  # chance of any such column in a test of sound sensors
+LEVEL = 1e-3  # chance of any such column in a test of faultless sensors
 _SHORTEST = 10  # steps without a change, below which nothing is called frozen
-# chance that a sound reading repeats the one before: a motion turns, and digits are few
+# chance that a faultless reading repeats the one before: a motion turns, and digits are few
 _LEAST_REPEATED = 0.1
 _SAME = 1e-6  # of a column's range: readings this near its end are at it
 _FEWEST_AT_END = 4
@@ -31,7 +31,7 @@ class Faulty(NamedTuple):
 
     ``sensor``: marker, channel or transducer; ``column``: its name, with an axis unless all axes are gaps; ``kind``:
     ``constant``, ``frozen``, ``clipped``, ``doubled`` or ``lost``; ``value`` that they have [m or m/s2]; ``p``: chance
-    of a sound column like it; ``words``: what they do.
+    of a faultless column like it; ``words``: what they do.
     """
 
     sensor: str
@@ -157,7 +157,7 @@ def _faults(values, groups, nothing):
         if not others.any() or not known[:, column].any():
             continue
         moving = changed[:, others].sum(axis=1) / np.maximum(known[:, others].sum(axis=1), 1)
-        moving = np.where(hung & noisy, 1.0, moving)  # where the whole instrument hangs, its noise says so
+        moving = np.where(hung & noisy, 1.0, moving)  # where the whole instrument hangs, its noise states it
         repeats = known[:, column] & ~changed[:, column]
         if varying[column]:
             at_end, p = _at_end(values[:, column], 0.5 * LEVEL / len(groups))
@@ -202,9 +202,9 @@ def _content(column):
 
 
 def _frozen(repeats, known, moving, level):
-    """Readings (n_times,) in stretches without a change, and the chance of the likeliest of these.
+    """Readings (n_times,) in stretches without a change, and the chance of the most probable of these.
 
-    Each step of a stretch has the chance of a repeated reading: that of the column beside the stretch, or that of the
+    Each step of a stretch has the chance of a repeated reading: that of the column next to the stretch, or that of the
     others within it, whichever is larger.
     """
     rows, chance = np.zeros(len(repeats) + 1, dtype=bool), 0.0
@@ -212,8 +212,8 @@ def _frozen(repeats, known, moving, level):
     for begin, end in edges.reshape(-1, 2):
         if end - begin < _SHORTEST:
             continue
-        beside = (repeats.sum() - (end - begin) + 1.0) / (known.sum() - (end - begin) + 2.0)
-        repeated = max(beside, 1.0 - moving[begin:end].mean(), _LEAST_REPEATED)
+        elsewhere = (repeats.sum() - (end - begin) + 1.0) / (known.sum() - (end - begin) + 2.0)
+        repeated = max(elsewhere, 1.0 - moving[begin:end].mean(), _LEAST_REPEATED)
         p = known.sum() * repeated ** (end - begin)
         if p < level:
             rows[begin : end + 1] = True
@@ -222,9 +222,10 @@ def _frozen(repeats, known, moving, level):
 
 
 def _at_end(values, level):
-    """Mask of the readings at the ends of a column's range, (n_times,), and the chance of as many in a sound record.
+    """Mask of the readings at the ends of a column's range, (n_times,), and the chance of as many in a faultless
+    record.
 
-    Beside a largest (or smallest) reading that is shared by neighbours each further one has the chance with which any
+    Next to a largest (or smallest) reading that is shared by neighbours each further one has the chance with which any
     reading repeats the one before, taken from the record itself below the plateau, so that coarse digits and a sensor
     at rest are no saturation. A limit that acts before the noise is added leaves no equal readings and is not seen.
     """

@@ -56,8 +56,8 @@ KINDS = (
     # no base motion: one body is filmed as poses over a ground at rest
     CampaignKind(
         holds=lambda test: test.motion is None,
-        check=Late(f"{_FLIGHT}.posed_check", "posed_lines"),
-        remark=Late(f"{_FLIGHT}.posed_check", "remark"),
+        check=Late(f"{_FLIGHT}.tracked_check", "tracked_lines"),
+        remark=Late(f"{_FLIGHT}.tracked_check", "remark"),
         decide=Late(f"{_FLIGHT}.decide", "decide"),
         measure_gain=Late(f"{_FLIGHT}.gain", "measure_gain"),
         compose=Late(f"{_FLIGHT}.section", "compose_flights"),

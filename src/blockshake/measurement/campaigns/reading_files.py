@@ -91,7 +91,7 @@ def _check_variable(test, name, path, dimensions, units):
 
 
 def _check_numbers(variable, path, units):
-    """Refuse what is no number, or says that its unit is another."""
+    """Refuse what is no number, or states that its unit is another."""
     if variable.dtype.kind not in "iuf":
         raise InputError(path, variable.name, f"expected numbers, not {variable.dtype}")
     stated = str(variable.attrs.get("units", "")).strip()
@@ -100,7 +100,7 @@ def _check_numbers(variable, path, units):
 
 
 def read_tables(path, transducers):
-    """Variables of a test, as by `read_netcdf`, from ``NAME.csv`` and, where it lies beside, ``NAME-acc.csv``.
+    """Variables of a test, as by `read_netcdf`, from ``NAME.csv`` and, where it lies with, ``NAME-acc.csv``.
 
     Parameters
     ----------
@@ -126,8 +126,8 @@ def read_tables(path, transducers):
     variables = {"marker_displacement": (("time", "marker", "axis"), values, {"units": "m"})}
     coordinates = {"time": time, "marker": markers, "axis": list(AXES)}
     wanted = f"{path.stem}-acc.csv".lower()
-    for beside in sorted(item for item in path.parent.iterdir() if item.name.lower() == wanted)[:1]:
-        time_acc, read = read_columns(file_below(path.parent, beside.name, path, "accelerometers"))
+    for companion in sorted(item for item in path.parent.iterdir() if item.name.lower() == wanted)[:1]:
+        time_acc, read = read_columns(file_below(path.parent, companion.name, path, "accelerometers"))
         coordinates["time_acc"] = time_acc
         for variable, dimension, sensors, unit in (
             ("accelerometer", "channel", [name for name in read if name not in transducers], "m s-2"),

@@ -8,9 +8,9 @@ from blockshake.errors import InputError
 from blockshake.geometry.schema import AXES
 from blockshake.measurement.campaigns.clocks import from_first_reading, missing_rows
 from blockshake.measurement.campaigns.faulty_readings import faulty_lines, instruments, stuck, without_faulty
+from blockshake.measurement.campaigns.initial_poses import initial_poses, with_initial_poses
 from blockshake.measurement.campaigns.lost_markers import without_lost
 from blockshake.measurement.campaigns.reading_files import SURVEY, read_netcdf, read_tables, read_variables
-from blockshake.measurement.campaigns.starting_places import standing, with_starting_places
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
 from blockshake.measurement.sensors.markers import driven_names, marker_position
 from blockshake.measurement.sensors.transducers import transducer_names
@@ -45,7 +45,7 @@ def read_test(path, structure):
     Parameters
     ----------
     path : str or path
-        A netCDF file, or ``NAME.csv`` with columns ``time_s`` and ``MARKER.AXIS`` [m]; beside it may lie
+        A netCDF file, or ``NAME.csv`` with columns ``time_s`` and ``MARKER.AXIS`` [m]; with it may lie
         ``NAME-acc.csv`` with ``time_s`` and one column a channel [m/s2] or displacement transducer [m]. An empty cell
         is a gap. A direction without a column, or without any reading in a netCDF file, was not measured.
     structure : Structure
@@ -55,7 +55,7 @@ def read_test(path, structure):
     -------
     xarray.Dataset
         Variables of docs/guide/campaigns.md, float64; NaN along a direction that was not measured, and where a column
-        holds no readings, see `without_faulty`; ``starting_place`` beside them, see `with_starting_places`. All times
+        holds no readings, see `without_faulty`; ``starting_place`` with them, see `with_initial_poses`. All times
         count from the markers' first reading. The file is never changed.
 
     Raises
@@ -70,14 +70,14 @@ def read_test(path, structure):
     test = read_tables(path, transducer_names(structure)) if table else read_netcdf(path)
     test = without_faulty(without_lost(checked_test(test, structure, path), structure), structure)
     _check_driven(test, structure, path)  # whose readings may have been faulty
-    return from_first_reading(with_starting_places(test, structure, path))
+    return from_first_reading(with_initial_poses(test, structure, path))
 
 
 def structure_at_start(path, structure):
     """The structure with its blocks where a test found them, by its survey: no reading of the test is looked at."""
     if path.suffix.lower() == ".csv":
         return structure
-    return standing(structure, with_starting_places(read_variables(path, SURVEY), structure, path))
+    return initial_poses(structure, with_initial_poses(read_variables(path, SURVEY), structure, path))
 
 
 def checked_test(test, structure, path):
@@ -149,7 +149,7 @@ def _check_driven(test, structure, path):
 
 
 def _check_clocks(test, path):
-    """The recorder's clock runs beside the markers'."""
+    """The recorder's clock runs next to the markers'."""
     if "time_acc" not in test.coords:
         return
     clocks = [(time[0], time[-1]) for time in (test["time"].to_numpy(), test["time_acc"].to_numpy())]

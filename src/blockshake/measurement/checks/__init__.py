@@ -1,1 +1,1 @@
-"""Whether a campaign is what it says: units, rates, places, noise."""
+"""Whether a campaign is what it states: units, rates, places, noise."""

@@ -91,7 +91,7 @@ def carried_remarks(time, readings, names, slab, noise):
     time : float64 array, shape (n_times,)
         [s]
     readings : float64 array, shape (n_times, n_markers, 3)
-        Of markers on blocks [m]; gaps are NaN, as is a direction that a marker does not measure.
+        For markers on blocks [m]; gaps are NaN, as is a direction that a marker does not measure.
     names : list of str, length n_markers
     slab : float64 array, shape (n_times, 3)
         Mean displacement of the slab's markers [m].
@@ -152,7 +152,7 @@ def _correlation(first, second):
 
 
 def _parabola(values, best):
-    """Place of the summit beside the best value, in steps; 0 at an end."""
+    """Place of the summit next to the best value, in steps; 0 at an end."""
     if not 0 < best < len(values) - 1:
         return 0.0
     before, here, after = values[best - 1 : best + 2]

@@ -16,7 +16,7 @@ from blockshake.measurement.campaigns.commanded_motion import (
     length_remarks,
 )
 from blockshake.measurement.campaigns.faulty_readings import faulty_lines
-from blockshake.measurement.campaigns.starting_places import starting_lines
+from blockshake.measurement.campaigns.initial_poses import initial_pose_lines
 from blockshake.measurement.checks.against_slab import carried_remarks, clock_remarks
 from blockshake.measurement.checks.quiet_noise import (
     accelerometer_noise,
@@ -112,7 +112,7 @@ class _Described:
         self.on_slab = on_driven(structure, test["marker"].values)
         self.slab = slab_displacement(test, structure)
         self.slab_noise = self.sensors.marker_noise / np.sqrt(self.on_slab.sum())
-        self.facts, self.remarks = [], faulty_lines(test) + starting_lines(test)
+        self.facts, self.remarks = [], faulty_lines(test) + initial_pose_lines(test)
         commanded = commanded_motion(campaign, entry)
         self.target = None if commanded is None else command_target(test, self.slab, commanded)
         self._describe_shape()

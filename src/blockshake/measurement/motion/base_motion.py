@@ -59,18 +59,19 @@ def smooth_readings(readings, density):
     return Smoothed(mean, covariance, likelihood)
 
 
-def likeliest_density(readings):
-    """Density of the white jerk at which `BaseReadings` are likeliest [m2/s5].
+def most_probable_density(readings):
+    """Density of the white jerk at which `BaseReadings` are most probable [m2/s5].
 
     A weak pitch has a second, lower summit at rest.
     """
-    return 10.0 ** likeliest(
+    return 10.0 ** most_probable(
         lambda exponent: smooth_readings(readings, 10.0**exponent), _DENSITIES, 2.0, 0.05
     )
 
 
-def likeliest(smoothed, tried, step, tolerance):
-    """Value at which a function gives the likeliest `Smoothed`: the best of those tried, closer within a step of it."""
+def most_probable(smoothed, tried, step, tolerance):
+    """Value at which a function gives the most probable `Smoothed`: the best of those tried, closer within a step of
+    it."""
 
     def unlikely(value):
         return -smoothed(value).likelihood
@@ -110,7 +111,7 @@ def base_coordinates(test, structure, sensors):
     noise : float64 array, shape (4,)
         Standard deviations [m, rad]; 0 of a coordinate that is not read.
     """
-    poses = body_poses(test, structure, sensors.marker_noise, asked=structure.driven)
+    poses = body_poses(test, structure, sensors.marker_noise, selected=structure.driven)
     body = driven_body(structure, poses)
     turn = poses.rotation[:, body]
     first = int(np.flatnonzero(np.isfinite(poses.position[:, body, 0]))[0])

@@ -65,7 +65,7 @@ def see_from_body(points, readings, start_position, start_rotation, noise=(1.0, 
     Notes
     -----
     Gauss-Newton with the minimum-norm step, so that markers on a line leave the turn about it at zero, where
-    `fit_poses` refuses them. Such a turn moves a marker that sits beside the line along y, by an amount nobody knows:
+    `fit_poses` refuses them. Such a turn moves a marker that sits next to the line along y, by an amount nobody knows:
     there the projector drops y. A residual is orthogonal to all rigid motions to first order.
     """
     n_times, n_markers = readings.shape[:2]

@@ -37,7 +37,7 @@ class BodyPoses:
     axes_read: np.ndarray  # bool (n_bodies, 3); whether the position along x, y and z is read
 
 
-def body_poses(test, structure, marker_noise, asked=None):
+def body_poses(test, structure, marker_noise, selected=None):
     """`BodyPoses` of bodies from the markers of a test.
 
     Parameters
@@ -47,7 +47,7 @@ def body_poses(test, structure, marker_noise, asked=None):
     structure : Structure
     marker_noise : float
         Standard deviation of a reading along an axis [m].
-    asked : bool array, shape (n_bodies,), optional
+    selected : bool array, shape (n_bodies,), optional
         Bodies whose markers are read, the others count as without; all by default.
 
     Notes
@@ -80,7 +80,7 @@ def body_poses(test, structure, marker_noise, asked=None):
     rotation = np.full((n_times, n_bodies, 3, 3), np.nan)
     covariance = np.full((n_bodies, 6, 6), np.nan)
     known, axes_read = [NOTHING] * n_bodies, np.zeros((n_bodies, 3), dtype=bool)
-    for body in np.unique(bodies if asked is None else bodies[asked[bodies]]):
+    for body in np.unique(bodies if selected is None else bodies[selected[bodies]]):
         mine = np.flatnonzero(bodies == body)
         known[body], axes_read[body], fit = _best_fit(
             arms[mine], readings[:, mine], measured[mine], start[body], structure.driven[body], marker_noise
@@ -201,12 +201,12 @@ def fit_poses(points, readings, marker_noise):
     Returns
     -------
     position : float64 array, shape (n_times, 3)
-        Of the mass centre, inertial frame [m]; NaN, as all else, where fewer than three markers were read, or markers
+        For the mass centre, inertial frame [m]; NaN, as all else, where fewer than three markers were read, or markers
         on a line alone.
     rotation : float64 array, shape (n_times, 3, 3)
         Body to world.
     covariance : float64 array, shape (n_times, 6, 6)
-        Of position [m] and small rotation, world frame [rad].
+        For position [m] and small rotation, world frame [rad].
 
     Notes
     -----

@@ -32,17 +32,17 @@ def curves_along_x(measured, members):
     if not markers:
         raise InputError("coverage", "marker", "expected a measured marker that the simulation has too")
     time = members["time"].to_numpy()
-    asked = measured["time"].to_numpy()
-    inside = (asked >= time[0] - SAME_TIME) & (asked <= time[-1] + SAME_TIME)
+    instants = measured["time"].to_numpy()
+    inside = (instants >= time[0] - SAME_TIME) & (instants <= time[-1] + SAME_TIME)
     if inside.sum() < 2:
         raise InputError("curves", "time", "expected measured times within the ensemble's")
     read, curves = _along_x(measured, markers).isel(time=inside), _along_x(members, markers)
-    values = at_times(curves.to_numpy(), time, asked[inside])
+    values = at_times(curves.to_numpy(), time, instants[inside])
     other = {name: coordinate for name, coordinate in curves.coords.items() if "time" not in coordinate.dims}
     return read, read.expand_dims(sample=members.sizes["sample"]).copy(data=values).assign_coords(other)
 
 
-def at_times(curves, time, asked):
+def at_times(curves, time, instants):
     """Curves at other times, each by the cubic through the four values around it.
 
     Parameters
@@ -51,17 +51,17 @@ def at_times(curves, time, asked):
         NaN, as after the end of a run, spreads to what it is needed for.
     time : float64 array, shape (n_times,)
         Uniform; at least four [s].
-    asked : float64 array, shape (n_asked,)
+    instants : float64 array, shape (n_asked,)
         Within ``time`` [s].
     """
-    step = (asked - time[0]) / (time[1] - time[0])
+    step = (instants - time[0]) / (time[1] - time[0])
     nearest = np.rint(step).astype(int)
     if np.abs(step - nearest).max() * (time[1] - time[0]) < SAME_TIME:
         return curves[..., nearest, :]
     first = np.clip(np.floor(step).astype(int) - 1, 0, len(time) - 4)
-    values = np.zeros((*curves.shape[:-2], len(asked), curves.shape[-1]))
+    values = np.zeros((*curves.shape[:-2], len(instants), curves.shape[-1]))
     for node in range(4):
-        weight = np.ones(len(asked))
+        weight = np.ones(len(instants))
         for other in range(4):
             if other != node:
                 weight *= (step - first - other) / (node - other)

@@ -57,9 +57,9 @@ def find_leaves(structure):
     names = [[structure.body_names[body] for body in leaf] for leaf in leaves]
     words = [zip(*(name.split("-") for name in one), strict=False) for one in names]
     begin = ["-".join(row[0] for row in takewhile(lambda row: len(set(row)) == 1, rows)) for rows in words]
-    told = all(begin) and len(set(begin)) == len(begin)
+    distinct = all(begin) and len(set(begin)) == len(begin)
     ends = (" to ".join(dict.fromkeys((one[0], one[-1]))) for one in names)
-    return dict(zip(begin if told else ends, leaves, strict=True))
+    return dict(zip(begin if distinct else ends, leaves, strict=True))
 
 
 def joint_coordinates(structure, position, rotation):
@@ -69,7 +69,7 @@ def joint_coordinates(structure, position, rotation):
     ----------
     structure : Structure
     position : float64 array, shape (n_times, n_bodies, 3)
-        Of the mass centres, inertial frame [m].
+        For the mass centres, inertial frame [m].
     rotation : float64 array, shape (n_times, n_bodies, 3, 3)
         Body to world.
 

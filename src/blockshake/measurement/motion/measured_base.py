@@ -10,8 +10,8 @@ from blockshake.measurement.motion.base_motion import (
     BaseReadings,
     base_coordinates,
     first_variances,
-    likeliest,
-    likeliest_density,
+    most_probable,
+    most_probable_density,
     smooth_readings,
     together,
 )
@@ -68,7 +68,7 @@ def measure_base(test, structure, sensors, command):
     parts = [
         together(time, column, sigma, none, none, 1.0) for column, sigma in zip(values.T, noise, strict=True)
     ]
-    densities = [likeliest_density(part) if part.marker_noise > 0.0 else 0.0 for part in parts]
+    densities = [most_probable_density(part) if part.marker_noise > 0.0 else 0.0 for part in parts]
     lag = 0.0
     for channel in shaken_channels(test, structure)[:1]:
         time_acc, pitch = test["time_acc"].to_numpy(), np.zeros(len(time))
@@ -79,7 +79,7 @@ def measure_base(test, structure, sensors, command):
         level = test["accelerometer"].sel(channel=channel).to_numpy() + weight, sensors.accelerometer_noise
         lag = _accelerometer_lag(read, time_acc, level, densities[0])
         parts[0] = together(*read, time_acc + lag, *level)
-        densities[0] = likeliest_density(parts[0])
+        densities[0] = most_probable_density(parts[0])
     base = _gathered(time, parts, densities)
     unread = [CHANNELS[axis] for axis in np.flatnonzero(np.isnan(values[:, :3]).all(axis=0))]
     base.attrs = {
@@ -92,7 +92,7 @@ def measure_base(test, structure, sensors, command):
         "unread": "".join(unread),
     }
     for axis in unread:
-        _move_as_told(base, axis, command)
+        _move_as_commanded(base, axis, command)
     return base
 
 
@@ -104,7 +104,7 @@ def record_start(time):
     return max(float(time[0]), 0.0)
 
 
-def _move_as_told(base, axis, command):
+def _move_as_commanded(base, axis, command):
     """Give an axis that nothing measures the commanded motion, or rest, and errors that nobody knows."""
     at = {"channel": axis}
     for derivative, name in enumerate(("displacement", "velocity")):
@@ -166,14 +166,14 @@ def base_as_motion(base, displacement, name, attributes):
 
 
 def _accelerometer_lag(read, time_acc, level, density):
-    """By how much the accelerometer's times are moved onto the markers' clock: the likeliest lag [s]."""
+    """By how much the accelerometer's times are moved onto the markers' clock: the most probable lag [s]."""
     count = round(_LARGEST_CLOCK_LAG / _LAG_STEP)
     lags = _LAG_STEP * np.arange(-count, count + 1)
 
     def smoothed(lag):
         return smooth_readings(together(*read, time_acc + lag, *level), density)
 
-    return likeliest(smoothed, lags, _LAG_STEP, 1e-5)
+    return most_probable(smoothed, lags, _LAG_STEP, 1e-5)
 
 
 def _gathered(marker_time, parts, densities):

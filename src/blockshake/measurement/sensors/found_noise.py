@@ -20,7 +20,7 @@ _LEAST = 0.5  # of the stated noise: rounded readings may not move at all in a r
 _STATED = 100.0  # readings that what is stated counts for
 _FAR_SHARE = 0.1  # of the variance: a slow part that is farther from the stated one is remarked
 _FILTERED = 0.03  # s; of a shorter memory are filters, whose noise no campaign states
-_UNEVEN = 1.1  # between the noise along two axes, within which one figure says both
+_UNEVEN = 1.1  # between the noise along two axes, within which one figure states both
 _OFFSET = 100.0  # variance of a constant, over that of the noise
 
 

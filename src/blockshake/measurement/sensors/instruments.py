@@ -98,10 +98,10 @@ def observe(run, structure, instruments, seed):
     run : xarray.Dataset
         A run file's content; with ``accelerometer`` and ``transducer_displacement`` these are read too.
     structure : Structure
-        Of the run.
+        The run.
     instruments : Instruments
     seed : int
-        Of noise, offsets and dropouts: each has a stream of its own, so that one fault more leaves the
+        For noise, offsets and dropouts: each has a stream of its own, so that one fault more leaves the
         others' numbers as they are.
 
     Returns
@@ -116,7 +116,7 @@ def observe(run, structure, instruments, seed):
 
     Notes
     -----
-    A marker that sits elsewhere than the structure says reads the displacement of where it sits. A clock that is
+    A marker that sits elsewhere than in the structure  reads the displacement of where it sits. A clock that is
     behind by the lag shows at the time t what was at t - lag; before the start everything rests.
     """
     noise, offsets, losses, wrong, slowly = (np.random.default_rng([seed, stream]) for stream in range(5))
@@ -221,10 +221,10 @@ def _delayed(displacement, time, lag):
     whole = np.isfinite(displacement).all(axis=(1, 2))
     known, states = time[whole], displacement[whole]
     spline = CubicSpline(np.append(known, 2.0 * known[-1] - known[-2]), np.concatenate([states, states[-1:]]))
-    asked = np.maximum(time - lag, known[0])
+    delayed = np.maximum(time - lag, known[0])
     shifted = np.full_like(displacement, np.nan)
-    reached = asked <= known[-1]
-    shifted[reached] = spline(asked[reached])
+    reached = delayed <= known[-1]
+    shifted[reached] = spline(delayed[reached])
     return shifted
 
 

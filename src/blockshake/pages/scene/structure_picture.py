@@ -11,7 +11,7 @@ from blockshake.pages.scene.bodies import body_colors
 from blockshake.pages.scene.projection import Scene
 
 _WIDTH, _HEIGHT = 0.25, 0.2  # m of paper, the height at most
-_BESIDE, _ABOVE = 0.06, 0.03  # m of paper for titles and axes
+_SIDEWAYS, _ABOVE = 0.06, 0.03  # m of paper for titles and axes
 _POINT = 0.0254 / 72.0  # m, of type
 _LETTER = 0.62  # of a type's size, the width of a letter
 _LARGEST_TYPE, _SMALLEST_TYPE = 7.0, 3.5  # points
@@ -88,7 +88,7 @@ def _scale(rows, width):
     """Metres of paper a metre of views, whose sizes [m] are given row by row."""
     wide = max(row[:, 0].sum() for row in rows)
     high = sum(row[:, 1].max() for row in rows)
-    return min((width - _BESIDE) / wide, (_HEIGHT - len(rows) * _ABOVE) / high)
+    return min((width - _SIDEWAYS) / wide, (_HEIGHT - len(rows) * _ABOVE) / high)
 
 
 def draw_blocks(axes, scene, structure, position, orientation):
@@ -115,7 +115,7 @@ def _bared(scene, structure):
 
 
 def _draw_names(axes, scene, structure, scale):
-    """Names on blocks that are seen, beside a sensor in the middle; ``scale``: m of paper, a metre."""
+    """Names on blocks that are seen, next to a sensor in the middle; ``scale``: m of paper, a metre."""
     middles = scene.seen(structure.position)[:, :2]
     for body, extent in _bared(scene, structure).items():
         width, height = scale * extent / _POINT

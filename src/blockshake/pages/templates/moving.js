@@ -1,4 +1,4 @@
-// Blocks of a sample in parallel projection beside the measured markers: to play, to turn, and to choose the sample, the
+// Blocks of a sample in parallel projection against the measured markers: to play, to turn, and to choose the sample, the
 // time and the magnification of. Displacements are multiplied point by point, so that blocks and markers compare.
 function showMoving(place, { step, frames, magnification, bodies, samples, measured }) {
   const form = document.createElement("form");

@@ -1,4 +1,4 @@
-// The contents stand open where there is room for them beside the text.
+// The contents stand open where there is room for them next to the text.
 document.querySelector("nav details").open = matchMedia("(min-width: 76rem)").matches;
 
 // Every table can be saved as CSV, and every figure as SVG: what the page holds, and nothing from elsewhere.

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from blockshake.geometry.rotations import rotation_matrices
-from blockshake.measurement.campaigns.starting_places import standing
+from blockshake.measurement.campaigns.initial_poses import initial_poses
 from blockshake.measurement.motion.body_poses import PLANAR, POSE, body_poses
 from blockshake.measurement.motion.joints import find_joints, joint_coordinates
 from blockshake.parity.finding import chance_within
@@ -92,7 +92,7 @@ def _slips(structure, test, sensors):
 
     None where a pose is not read.
     """
-    displacement, structure = test["marker_displacement"], standing(structure, test)
+    displacement, structure = test["marker_displacement"], initial_poses(structure, test)
     rest = displacement.isel(time=slice(0, _REST)).mean("time").fillna(0.0)
     every = max(1, round(_EVERY / float(np.median(np.diff(test["time"])))))
     counted = test.assign(marker_displacement=displacement - rest).isel(time=slice(None, None, every))
@@ -108,7 +108,7 @@ def _slips(structure, test, sensors):
 
 
 def _of_joints(pairs, body, seen):
-    """Of every joint of a body: parts of the regression of its slip, and its noise [m]."""
+    """For every joint of a body: parts of the regression of its slip, and its noise [m]."""
     joints = []
     for joint, pair in enumerate(pairs):
         if body in pair and seen:

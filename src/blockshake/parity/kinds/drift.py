@@ -70,11 +70,11 @@ def _drift(pair, lag):
         return None
     since, expected = pair.time[known] - pair.time[0], pair.expected_slow[known]
     others = [np.ones(len(since)), expected] if np.std(expected) > _MOVES else [np.ones(len(since))]
-    return _beside(others, (since / np.ptp(pair.time) - 0.5)[:, None], read[known] - expected, since)
+    return _regression(others, (since / np.ptp(pair.time) - 0.5)[:, None], read[known] - expected, since)
 
 
-def _beside(others, columns, values, since):
-    """Regression of values on columns beside others, which have no meaning: `Size` or None."""
+def _regression(others, columns, values, since):
+    """Regression of values on columns with others, which have no meaning: `Size` or None."""
     basis = np.linalg.qr(np.column_stack(others))[0]
     columns, values = (part - basis @ (basis.T @ part) for part in (columns, values))
     return regression([(columns, values, since)], SEGMENT)
@@ -130,4 +130,4 @@ def _slope(time, values, nuisance):
     # the coefficient of its size is half the difference of the slopes
     columns = np.column_stack([scale, 0.5 * np.abs(scale)])
     others = [np.ones(len(since)), *(column[known] for column in nuisance)]
-    return _beside(others, columns, values[known], since)
+    return _regression(others, columns, values[known], since)

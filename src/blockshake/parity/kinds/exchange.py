@@ -97,7 +97,7 @@ def channel_exchanges(pairs_by_test, lags, level):
     clear = {}
     for name in names:
         for other in names:
-            p = level.hypotheses * _chance_of_sound(name, other, pairs_by_test, lags)
+            p = level.hypotheses * _chance_without_fault(name, other, pairs_by_test, lags)
             if p < level.chance:
                 clear[name, other] = p
     findings = []
@@ -109,7 +109,7 @@ def channel_exchanges(pairs_by_test, lags, level):
     return findings
 
 
-def _chance_of_sound(name, other, pairs_by_test, lags):
+def _chance_without_fault(name, other, pairs_by_test, lags):
     """Chance of the misfit of a channel that is neither exchanged with ``other`` nor, of the same name, reversed."""
     before = after = noise = count = 0.0
     for test, pairs in pairs_by_test.items():

@@ -34,7 +34,7 @@ class Column(NamedTuple):
 
     kind: Kind
     components: int  # 1, or 3 of a vector
-    tolerance: float  # size that a sound sensor may have; its standard deviation is half of it
+    tolerance: float  # size that a faultless sensor may have; its standard deviation is half of it
     signature: Callable  # makes the readings that a unit of the fault leaves, by component
     by_test: bool = False  # whether the fault is another one in each test
     visible: float = 0.0  # size that would have to leave as much as the noise, for the fault to be looked for

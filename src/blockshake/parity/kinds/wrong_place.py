@@ -1,4 +1,4 @@
-"""A marker, or an end of a displacement transducer, sits elsewhere on its body than the structure says."""
+"""A marker, or an end of a displacement transducer, sits elsewhere on its body than in the structure ."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ def _correct(test, findings, structure):
     """Move markers to where the structure has them, by the rotation of their body.
 
     Where fewer than three markers are read the reading becomes a gap. The reading of a displacement transducer stays:
-    it is right, of other points than the structure says.
+    it is right, of other points than in the structure .
     """
     offsets = {finding.where[0]: finding.estimate for finding in findings}
     for name in structure.body_names:

@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.dynamics.friction import FrictionLaws, assemble_friction, joint_compliance
 from blockshake.geometry.reference_block import reference_body
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 
 
 class Interfaces(NamedTuple):
@@ -66,19 +66,19 @@ def assemble_interfaces(structure, parameters):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def in_series(stiffness, a, b):
     """Stiffness between two bodies, each giving half of the compliance: per area [N/m3]."""
     return 2.0 / (1.0 / stiffness[a] + 1.0 / stiffness[b])
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def normal_stiffness(interfaces, a, b):
     """Stiffness of two bodies and the soft layer between them in series, along the normal: per area [N/m3]."""
     return 2.0 / (1.0 / interfaces.k_n[a] + 1.0 / interfaces.k_n[b] + 2.0 * interfaces.layer[a, b])
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def dashpot_coefficient(interfaces, a, b, ratio, stiffness, area):
     """Coefficient of one side's dashpot, per area of node [N s/m3] or, literally, per root of it [N s/m2].
 
@@ -90,7 +90,7 @@ def dashpot_coefficient(interfaces, a, b, ratio, stiffness, area):
     ratio : float
         Fraction of critical damping [1].
     stiffness : float
-        Of the interface, per area [N/m3].
+        For the interface, per area [N/m3].
     area : float
         In touch [m2].
 

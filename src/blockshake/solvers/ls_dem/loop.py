@@ -19,7 +19,7 @@ from blockshake.dynamics.system import (
 )
 from blockshake.geometry.rotations import rotate_into, rotation_matrix_into
 from blockshake.geometry.vectors import copy_into, cross
-from blockshake.jit import borrowing_kernel, inner_kernel, loop_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation, loop_kernel
 from blockshake.solvers.external_forces import closure_into, external_wrenches_into
 from blockshake.solvers.ground import ground_at_start, move_ground_into
 from blockshake.solvers.ls_dem.contact.candidates import find_candidates, lists_expired
@@ -51,7 +51,7 @@ from blockshake.solvers.record import (
     with_room,
 )
 
-# Code of `_advance` beside those of a run: a node outside the lists may touch by now
+# Code of `_advance` with those of a run: a node outside the lists may touch by now
 _LISTS_EXPIRED = -1
 
 
@@ -71,7 +71,7 @@ def integrate(assembly, times, pause, progress, candidates, joints, record):
     Returns
     -------
     code, culprit : int
-        Of `blockshake.solvers.record`; body that collapsed or ran away, else -1.
+        `blockshake.solvers.record`; body that collapsed or ran away, else -1.
     candidates, joints, record
         To go on with.
 
@@ -159,7 +159,7 @@ def _advance(assembly, times, pause, progress, candidates, record, searched, gro
     return COMPLETED, -1
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _account_into(bodies, loads, now, progress):
     """Heat of the step, and work of the driven bodies: their mean force since the step before times their motion."""
     audit, ground = progress.audit, progress.ground
@@ -183,7 +183,7 @@ def _account_into(bodies, loads, now, progress):
     copy_into(now, ground)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _kick(bodies, loads, dt, under_way, progress):
     """Newton-Euler equations: momenta from half a step before to half a step after; the first is half a kick."""
     state, half_velocity, momentum = progress.state, progress.half_velocity, progress.half_momentum
@@ -206,7 +206,7 @@ def _kick(bodies, loads, dt, under_way, progress):
             momentum[body, axis] += 0.5 * dt * loads.moment[body, axis]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _drift(bodies, dt, progress):
     """Poses a step on."""
     state = progress.state

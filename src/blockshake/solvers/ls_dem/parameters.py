@@ -58,7 +58,7 @@ class LsDemParameters(Strict):
         description="whether the damped force of Eq. (2) may pull [true or false]; printed so, chosen: it does not",
     )
     shear_damping_ratio: NotNegative = Field(
-        0.0, description="dashpot beside the shear spring, as a fraction of critical [1]; the paper has none"
+        0.0, description="dashpot next to the shear spring, as a fraction of critical [1]; the paper has none"
     )
 
 

@@ -9,7 +9,7 @@ from blockshake.geometry.level_set import box_distance, hollow_box_distance
 from blockshake.geometry.level_set_grid import box_grid, grid_distance, grid_table, mesh_grid
 from blockshake.geometry.meshes.mesh_nodes import mesh_nodes
 from blockshake.geometry.surface_nodes import box_nodes
-from blockshake.jit import borrowing_kernel, inner_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation
 
 INVERSE_SPACING = 7  # column of ``Surfaces.lattice``
 _COARSEST = 4.0 / 3.0  # cell of a lattice over volume per surface: two thirds of a plate's thickness
@@ -201,7 +201,7 @@ def level_set(surfaces, shape, x, y, z):
     return grid_distance(x, y, z, surfaces.values, at_first, ox, oy, oz, n_x, n_y, n_z, inverse)[0]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def lattice_of(lattice, shape):
     """First value, origin, counts and cells per metre of a shape's lattice, as eight numbers."""
     row = lattice[shape]

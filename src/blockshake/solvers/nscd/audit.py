@@ -14,7 +14,7 @@ from blockshake.dynamics.system import (
     potential_energy,
 )
 from blockshake.geometry.vectors import copy_into, dot, transposed_product, velocity_at
-from blockshake.jit import borrowing_kernel, inner_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation
 from blockshake.solvers.external_forces import closure_into
 from blockshake.solvers.nscd.progress import (
     BAD_STEPS,
@@ -61,7 +61,7 @@ def start_audit(bodies, contacts, dt, theta, strain, progress):
     progress.audit[IN_PLAY] = 1e-3 * weight
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def count_into(iterations, residual, tolerance, parts, clock, audit):
     """Add a step to the counts; ``residual`` is the worst and ``iterations`` the sum of its ``parts``."""
     clock[ITERATIONS] += iterations
@@ -72,7 +72,7 @@ def count_into(iterations, residual, tolerance, parts, clock, audit):
     audit[WORST_RESIDUAL] = max(audit[WORST_RESIDUAL], residual)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def audit_into(contacts, n_contacts, progress):
     """Bring the deepest penetration, the energy in play and its misfit up to the end of a step."""
     audit, energy, start = progress.audit, progress.energy, progress.energy_start
@@ -102,7 +102,7 @@ def stopper_energy(bodies, stoppers, base, state):
     return held
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def account_into(bodies, contacts, u_mean, step, theta, squeezed, deformation, progress):
     """Bring the energy terms up to the end of the step.
 

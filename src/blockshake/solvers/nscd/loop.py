@@ -5,7 +5,7 @@ import numpy as np
 from blockshake.dynamics.collapse import find_collapsed
 from blockshake.dynamics.system import place_driven_into
 from blockshake.geometry.vectors import copy_into, dot
-from blockshake.jit import borrowing_kernel, inner_kernel, kernel
+from blockshake.jit import inner_kernel, kernel, kernel_without_allocation
 from blockshake.solvers.external_forces import external_impulses_into, number_of
 from blockshake.solvers.ground import ground_at_start, move_ground_by_secant_into, move_ground_into
 from blockshake.solvers.nscd.audit import account_into, audit_into, count_into, start_audit, stopper_energy
@@ -54,7 +54,7 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
     Returns
     -------
     code, culprit : int
-        Of `blockshake.solvers.record`; body that collapsed or ran away, else -1.
+        `blockshake.solvers.record`; body that collapsed or ran away, else -1.
     contacts, joints, record
         To go on with.
 
@@ -166,7 +166,7 @@ def _detect(bodies, stoppers, layers, polyhedra, settings, base, step, placed, f
     return contacts
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def record_until_into(
     bodies, ground, before, energy_before, contacts, n_contacts, joints, number, dt, times, progress, record
 ):
@@ -185,7 +185,7 @@ def record_until_into(
         clock[NEXT_RECORD] += 1
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def least_impulse(bodies, gravity, v, dt):
     """Impulse below which all impulses of a step count as that [N s]: a thousandth of the lightest body's weight's.
 

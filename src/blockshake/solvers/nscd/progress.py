@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.dynamics.system import ENERGY_TERMS, State
 from blockshake.geometry.vectors import copy_into
-from blockshake.jit import borrowing_kernel, inner_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation
 
 # Entries of ``clock`` after `STEP` and `NEXT_RECORD` of `blockshake.solvers.record`: sums and counts over the steps
 ITERATIONS, MOST_ITERATIONS, BAD_STEPS, CAPPED_STEPS, PARTED_STEPS, N_CLOCK = 2, 3, 4, 5, 6, 7
@@ -71,7 +71,7 @@ def no_joints(n_bodies):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def press_anew(joints, contacts, n_contacts):
     """Whether two bodies without a joint press on each other; the first ``n_contacts`` contacts are those of bodies."""
     for contact in range(n_contacts):
@@ -109,7 +109,7 @@ def _with_joint(joints, a, b):
     return new
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def slip_into(contacts, n_contacts, u, dt, theta, joints):
     """Bring slip and slip rate of the joints up to the end of a step.
 

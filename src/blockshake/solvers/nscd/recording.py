@@ -5,10 +5,10 @@ import numpy as np
 from blockshake.dynamics.system import State, place_driven_into
 from blockshake.geometry.rotations import rotate_into
 from blockshake.geometry.vectors import transposed_product
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def record_into(bodies, before, after, energy_before, energy, share, row, record):
     """Keep the state at a share of the step: linear, rotations along the step's own."""
     for body in range(bodies.mass.size):
@@ -26,13 +26,13 @@ def record_into(bodies, before, after, energy_before, energy, share, row, record
         record.energy[row, term] = (1.0 - share) * energy_before[term] + share * energy[term]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _put_between_into(old, new, share, out):
     for axis in range(3):
         out[axis] = (1.0 - share) * old[axis] + share * new[axis]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _rotation_between(start, end, share):
     """``share`` of the world rotation vector [rad] that turns quaternion ``start`` into ``end``."""
     w, x, y, z = start[0], -start[1], -start[2], -start[3]
@@ -48,7 +48,7 @@ def _rotation_between(start, end, share):
     return share * (x * factor), share * (y * factor), share * (z * factor)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def record_driven_into(bodies, ground, row, record):
     """Overwrite the driven bodies with the ground motion itself, which is ``ground`` (Ground) at the record time."""
     kept = State(
@@ -57,7 +57,7 @@ def record_driven_into(bodies, ground, row, record):
     place_driven_into(bodies, ground.displacement, ground.velocity, kept)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def record_forces_into(contacts, n_contacts, joints, dt, row, record):
     """Keep the joints' mean forces over the step, on the second body of each [N]."""
     record.joint_force[row] = 0.0

@@ -42,7 +42,7 @@ def settled_state(scene, touching, state):
 
     Notes
     -----
-    Implicit Euler steps, each from rest and far longer than any period: with the mass next to nothing beside
+    Implicit Euler steps, each from rest and far longer than any period: with the mass next to nothing with
     ``k h^2`` they are Newton's method for the equilibrium, with the contact law of the run.
     """
     joints = no_joints(len(scene.bodies.driven))

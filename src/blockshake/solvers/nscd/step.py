@@ -15,7 +15,7 @@ from blockshake.geometry.vectors import (
     tensor_in_world_into,
     transposed_product,
 )
-from blockshake.jit import borrowing_kernel, inner_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation
 
 _MAX_ITERATIONS = 50
 _ROUNDING = 1e-15
@@ -70,7 +70,7 @@ def copy_state(state):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def predict_into(bodies, state, ground, dt, theta, step):
     """Poses at ``(1 - theta) dt`` into the step, and velocities at its end without contact, but for external impulses.
 
@@ -117,7 +117,7 @@ def predict_into(bodies, state, ground, dt, theta, step):
             put_into(detection.angular_velocity[body], v[body, 3:])
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def move_into(bodies, ground, dt, theta, contacts, step, state):
     """Newton-Euler equations: poses and velocities at the end of the step under gravity and all impulses.
 
@@ -165,7 +165,7 @@ def move_into(bodies, ground, dt, theta, contacts, step, state):
         )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _rotated(rotation, x):
     """Vector ``x`` turned by a rotation vector [rad], by Rodrigues' formula."""
     rx, ry, rz = rotation[0], rotation[1], rotation[2]
@@ -182,7 +182,7 @@ def _rotated(rotation, x):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _weighted(start, end, theta, factor):
     """``factor`` times the mean of two vectors, the second with weight ``theta``."""
     return (
@@ -192,7 +192,7 @@ def _weighted(start, end, theta, factor):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def turn_into(
     orientation, spin, inertia, inverse_inertia, torque, dt, theta, new_orientation, new_spin, mean_spin
 ):

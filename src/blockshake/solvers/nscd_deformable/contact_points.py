@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.geometry.overlap import find_pairs
 from blockshake.geometry.vectors import copy_into, cross, difference, dot, put_into, transposed_product
-from blockshake.jit import borrowing_kernel, inner_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation
 from blockshake.solvers.nscd.contact.contacts import add_contact_into, empty_contacts, first_rows
 from blockshake.solvers.nscd.contact.detection import LEAST_AREA, detect_pair_into
 from blockshake.solvers.nscd_deformable.elastic_bodies import anchor_into
@@ -30,14 +30,14 @@ class Anchors(NamedTuple):
     active: np.ndarray
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _parts(side, other, spacing):
     """Equal parts of at most ``spacing`` into which the longer of two opposite sides, given by their ends, is cut."""
     longest = np.sqrt(max(dot(side, side), dot(other, other)))
     return max(1, int(np.ceil(longest / spacing - 1e-6)))
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _joint_points_into(P, g, n_s, n_t, area, points, clearance, areas):
     """Points over a joint with four corners ``P`` and gaps ``g`` there, as in `joint_points`; their number."""
     count = 0
@@ -120,7 +120,7 @@ def _with_capacity(contacts, points, weights, capacity):
     return more, more_points, more_weights
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _add_joint_into(
     elastic, placed, rotations, a, b, normal, joint, clearance, areas, margin, layer, admittance, contacts, points,
     weights, count,
@@ -157,7 +157,7 @@ def find_contacts(
         Those of `detect_contacts`; the polyhedra are without deformation.
     elastic : Elastic
     spacing : float
-        Of the points of a joint [m].
+        The points of a joint [m].
 
     Returns
     -------
@@ -212,7 +212,7 @@ def _active_points(elastic, points, weights):
     return first, active[:count].copy()
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def tangents_into(rotations, contacts):
     """Complete each contact's basis with tangents that follow body a: they turn with it and never flip."""
     for contact in range(contacts.gap.size):
@@ -231,7 +231,7 @@ def tangents_into(rotations, contacts):
         put_into(cross(n, basis[1]), basis[2])
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def deform_gaps_into(anchors, rotations, displacements, contacts):
     """Add to each gap what the deformation opens it by.
 
@@ -246,7 +246,7 @@ def deform_gaps_into(anchors, rotations, displacements, contacts):
             contacts.gap[contact] += (1.0 if side else -1.0) * dot(inward, moved)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def anchored(anchors, contact, side, values):
     """Vector at a contact, from those at the lattice's points of one of its bodies; body frame."""
     x, y, z = 0.0, 0.0, 0.0

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.errors import Argument, InputError
-from blockshake.jit import borrowing_kernel, inline_kernel
+from blockshake.jit import inline_kernel, kernel_without_allocation
 from blockshake.solvers.nscd_deformable.shapes import elastic_shapes
 
 # What fits into 2 GiB: constraint shapes of a mesh, and all modes of one
@@ -142,7 +142,7 @@ def shapes_of(elastic, body):
     return elastic.shape[elastic.first_entry[body] : elastic.first_entry[body + 1]].reshape(rows, columns)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _cell(elastic, body, axis, x):
     """Line below a coordinate, within the lattice, and how far the coordinate is from it to the next, 0 to 1."""
     first, last = elastic.first_line[3 * body + axis], elastic.first_line[3 * body + axis + 1]
@@ -153,11 +153,11 @@ def _cell(elastic, body, axis, x):
     return line - first, min(max(share, 0.0), 1.0)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def anchor_into(elastic, body, x, outward, points, weights):
     """Four points of a body's lattice around a place on its surface, and their weights, overwritten.
 
-    ``x``: the place, seen from the mass centre [m]; ``outward``: direction out of the body there, which says on which
+    ``x``: the place, seen from the mass centre [m]; ``outward``: direction out of the body there, which states on which
     of the six faces the place is; body frame. ``points`` int64 (4,): indices among the points of all bodies;
     ``weights`` (4,): bilinear, of sum 1 [1], zero where the body is rigid.
     """

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import borrowing_kernel, inline_kernel, inner_kernel, kernel
+from blockshake.jit import inline_kernel, inner_kernel, kernel, kernel_without_allocation
 from blockshake.solvers.nscd_deformable.elastic_bodies import shapes_of
 
 
@@ -57,7 +57,7 @@ def compliance_of(elastic, response, body):
     return response.compliance[first:last].reshape(rows, rows)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def predict_elastic_into(elastic, response, deformation, amplitude, rate):
     """Elastic coordinates at which contacts are found, and rates at the end of the step without contact.
 
@@ -72,7 +72,7 @@ def predict_elastic_into(elastic, response, deformation, amplitude, rate):
         rate[shape] = response.admittance[shape] * (v - pull)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def points_into(elastic, coordinates, anchors, points):
     """Displacements, or velocities, of the lattice's points that carry contact, body frames.
 
@@ -88,7 +88,7 @@ def points_into(elastic, coordinates, anchors, points):
                 points[point, axis] = _dot(shapes[3 * (point - first) + axis], values)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _dot(x, y):
     """``x`` times ``y`` in four sums that are added in a fixed order."""
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
@@ -104,7 +104,7 @@ def _dot(x, y):
     return (a + b) + (c + d)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _move_elastic_into(elastic, response, anchors, forces, rate, deformation, pushes):
     """`move_elastic_into` with an array (n_shapes,) to work in."""
     for body in range(elastic.first_shape.size - 1):
@@ -158,7 +158,7 @@ def move_elastic_into(elastic, response, anchors, forces, rate, deformation):
     return _move_elastic_into(elastic, response, anchors, forces, rate, deformation, np.empty(rate.size))
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def elastic_energy(elastic, deformation):
     """Kinetic and strain energy of the elastic coordinates [J]."""
     kinetic, strain = 0.0, 0.0

@@ -99,7 +99,7 @@ def elastic_shapes(size, poisson_ratio, mesh_size, contact_spacing, free_modes):
         Edge lengths [m].
     poisson_ratio : float
     mesh_size, contact_spacing : float
-        Of the bricks and of the lattice [m].
+        The bricks and of the lattice [m].
     free_modes : int
         Free modes of vibration, lowest first, that join the constraint shapes; as many as the mesh has or more give
         all modes and no constraint shapes: the full mesh.

@@ -106,12 +106,12 @@ class Answer:
     limit: float  # by which the score of the true value exceeds the lowest one at most, at `LEVEL` [1]
     # that scores differ as much where no test depends on the parameter, all questions taken together [1]
     chance: float
-    # lower, upper: shares of the range between which no value is refused; 0 and 1 where nothing is told [1]
+    # lower, upper: shares of the range between which no value is refused; 0 and 1 where nothing is known [1]
     lower: float
     upper: float
 
     @property
-    def told(self):
+    def constrained(self):
         """Whether the tests tell of the parameter at all."""
         return self.chance <= 1.0 - LEVEL
 
@@ -121,16 +121,16 @@ class Answer:
         return float(SHARES[np.argmin(self.score)])
 
 
-def answer_questions(questions, seed):
-    """`Answer` of tests on parameters by question, the level of what is told kept over all questions together.
+def answer_hypotheses(hypotheses, seed):
+    """`Answer`: which parameters the readings constrain, at a family-wise error rate over all questions.
 
     Parameters
     ----------
-    questions : dict of hashable to (float64 array, list of Distances)
-        Shares of the parameter's range at which the samples lie, shape (n_samples,), and the tests that are asked.
+    hypotheses : dict of hashable to (float64 array, list of Distances)
+        Shares of the parameter's range at which the samples lie, shape (n_samples,), and the tests that are used.
         The samples are the same in all.
     seed : int
-        Of the shuffles.
+        The shuffles.
 
     Notes
     -----
@@ -139,26 +139,26 @@ def answer_questions(questions, seed):
     (Westfall and Young 1993). Tests count by one over the standard deviation of their shuffled scores: a reading that
     follows other parameters, or no parameter at all, scatters more and counts for less.
     """
-    if not questions:
+    if not hypotheses:
         return {}
-    size = len(next(iter(questions.values()))[0])
+    size = len(next(iter(hypotheses.values()))[0])
     generator = np.random.default_rng(seed)
-    deals = np.array([generator.permutation(size) for _ in range(_SHUFFLES)])
-    scores, counts, told, shuffled = {}, {}, {}, []
-    for name, (shares, tests) in questions.items():
+    permutations = np.array([generator.permutation(size) for _ in range(_SHUFFLES)])
+    scores, counts, constrained, shuffled = {}, {}, {}, []
+    for name, (shares, tests) in hypotheses.items():
         weights = weights_near(shares, SHARES)
-        dealt = weights[:, deals].transpose(1, 0, 2)
-        by_test = np.array([weighted_scores(dealt, test) for test in tests])
+        permuted = weights[:, permutations].transpose(1, 0, 2)
+        by_test = np.array([weighted_scores(permuted, test) for test in tests])
         counts[name] = 1.0 / np.maximum(by_test.std(axis=1).mean(axis=1), np.finfo(float).tiny)
         scores[name] = np.average([weighted_scores(weights, test) for test in tests], 0, counts[name])
         spreads = np.ptp(np.average(by_test, 0, counts[name]), axis=-1)
         mean, deviation = spreads.mean(), max(spreads.std(), np.finfo(float).tiny)
-        told[name] = (np.ptp(scores[name]) - mean) / deviation
+        constrained[name] = (np.ptp(scores[name]) - mean) / deviation
         shuffled.append((spreads - mean) / deviation)
     largest = np.max(shuffled, axis=0)
     answers = {}
-    for name, (shares, tests) in questions.items():
-        chance = float(rank_chance(told[name], largest))
+    for name, (shares, tests) in hypotheses.items():
+        chance = float(rank_chance(constrained[name], largest))
         score, limit, lower, upper = scores[name], np.inf, 0.0, 1.0
         if chance <= 1.0 - LEVEL:
             limit = excess_of_truth(shares, tests, counts[name])
@@ -171,7 +171,7 @@ def answer_questions(questions, seed):
 def excess_of_truth(shares, tests, counts):
     """By how much the score of a true value exceeds the lowest one at most, at `LEVEL` [1].
 
-    ``shares`` and ``tests`` as of a question of `answer_questions`; ``counts``: how much each test counts.
+    ``shares`` and ``tests`` as of a question of `answer_hypotheses`; ``counts``: how much each test counts.
 
     Notes
     -----

@@ -5,7 +5,7 @@ import xarray as xr
 
 from blockshake.geometry.structure import load_structure
 from blockshake.store import load_made
-from blockshake.study.calibration.answers import SHARES, answer_questions
+from blockshake.study.calibration.answers import SHARES, answer_hypotheses
 from blockshake.study.calibration.comparison import hollow_shape, left_out, read_distances
 from blockshake.study.calibration.settings import RESTITUTION, STIFFNESS, CalibrationSettings
 from blockshake.study.sampling.distributions import load_distributions
@@ -26,13 +26,13 @@ def calibrate(compared, study):
     Returns
     -------
     dict
-        JSON-like. ``size`` of the design. ``left_out``: tests that are not asked, since too many samples have no
+        JSON-like. ``size`` of the design. ``left_out``: tests that are left out, since too many samples have no
         reading of them. ``parameters`` by name: ``lowest``, ``highest`` and ``scale`` of the range
         [1], ``assumed``, the value that the study takes, ``values`` at which scores are taken, and ``answers`` by
         model and of `ALL`. ``tests``: a list with ``case``, ``model``, ``test``, ``motion``, ``scale``, ``reading``,
-        ``synthetic``, ``unsolved``, ``chance`` of the test [1], and ``answers`` by parameter. An answer has ``told``,
-        ``chance`` [1], ``best``, ``lower`` and ``upper``, between which no value is refused, null where none is refused
-        on that side, ``assumed_is_refused``, and of groups of tests ``score`` [1].
+        ``synthetic``, ``unsolved``, ``chance`` of the test [1], and ``answers`` by parameter. An answer has
+        ``known_ones``, ``chance`` [1], ``best``, ``lower`` and ``upper``, between which no value is refused, null where
+        none is refused on that side, ``assumed_is_refused``, and of groups of tests ``score`` [1].
 
     Notes
     -----
@@ -50,14 +50,14 @@ def calibrate(compared, study):
                 single[parameter, place, test, reading] = (shares, [found])
                 for group in (one.attrs["model"], ALL):
                     grouped.setdefault((parameter, group), (shares, []))[1].append(found)
-    alone, together = answer_questions(single, seed), answer_questions(grouped, seed)
+    alone, together = answer_hypotheses(single, seed), answer_hypotheses(grouped, seed)
     parameters = {}
     for name, span in ranges.items():
         if not any(parameter == name for parameter, _ in together):
             continue
         assumed = _assumed(name, study, [one.attrs["case"] for one in compared])
         answers = {
-            group: _told(answer, span, assumed) | {"score": answer.score.tolist()}
+            group: _constraint(answer, span, assumed) | {"score": answer.score.tolist()}
             for (parameter, group), answer in together.items()
             if parameter == name
         }
@@ -73,7 +73,9 @@ def calibrate(compared, study):
         _of_test(compared[place], test, reading)
         | {
             "answers": {
-                name: _told(alone[name, place, test, reading], ranges[name], parameters[name]["assumed"])
+                name: _constraint(
+                    alone[name, place, test, reading], ranges[name], parameters[name]["assumed"]
+                )
                 for name in map(str, compared[place]["parameter"].values)
             }
         }
@@ -120,12 +122,12 @@ def _assumed(name, study, cases):
     return structure.file.shapes[shape].hollow / edge
 
 
-def _told(answer, span, assumed):
+def _constraint(answer, span, assumed):
     """An answer in the parameter's unit."""
     share = float(np.clip(span.share(max(assumed, span.lowest)), 0.0, 1.0))
-    refused = answer.told and not answer.lower <= share <= answer.upper
+    refused = answer.constrained and not answer.lower <= share <= answer.upper
     return {
-        "told": answer.told,
+        "told": answer.constrained,
         "chance": answer.chance,
         "best": float(span.value(answer.best)),
         "lower": float(span.value(answer.lower)) if answer.lower > 0.0 else None,

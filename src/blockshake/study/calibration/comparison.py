@@ -60,7 +60,7 @@ def compare_open_tests(case, campaign, model, given, store):
     settings = CalibrationSettings(**given["calibration"])
     ensemble = {
         **given["ensemble"],
-        "seed": _seed_beside(given["ensemble"]["seed"]),
+        "seed": _second_seed(given["ensemble"]["seed"]),
         "linked": given["ensemble"]["linked"] | settings.linked,
     }
     variables = load_distributions(ensemble["distributions"], "ensemble")
@@ -88,7 +88,7 @@ def compare_open_tests(case, campaign, model, given, store):
     return found
 
 
-def _seed_beside(seed):
+def _second_seed(seed):
     """Seed of the calibration's design, whose samples are others than those of the study."""
     return int(np.random.SeedSequence([seed, 0]).generate_state(1)[0])
 

@@ -84,7 +84,7 @@ def simulate_readings(test, model, settings, rows, time_steps, ensemble, store):
     rows : pandas.DataFrame
         Sampled values, index the sample, columns dotted names.
     time_steps : pandas.Series
-        Of the samples [s]; a run that does not converge is made again by half the step, down to an eighth.
+        For the samples [s]; a run that does not converge is made again by half the step, down to an eighth.
     ensemble : dict
         ``seed`` of the design, of which the motions' draws are, and ``linked``, parameters that take another's value.
     store : Store
@@ -202,7 +202,7 @@ def log_spectrum(test, structure, duration):
         As in a campaign's test file, its accelerometers' time from the start of the input on [s].
     structure : Structure
     duration : float
-        Of the window [s].
+        The window [s].
 
     Returns
     -------

@@ -19,7 +19,7 @@ from blockshake.study.calibration.answers import LEVEL
 from blockshake.study.calibration.calibration import ALL, models_of
 
 _UNLIKE = 0.05  # chance of a test, below which no sample resembles it
-_NOT_TOLD = "not told"
+_NOT_CONSTRAINED = "unknown"
 _PANELS_ABREAST = 3
 _ROW = 0.052  # m of paper
 _COLORS = (BLUE, ORANGE)
@@ -36,7 +36,7 @@ def calibration(content):
         f"{_drawn(found['parameters'])} The samples near a value are scored by the continuous ranked probability score "
         "of two readings: the markers' displacement relative to the slab, and the spectrum of the blocks' "
         "accelerations. "
-        "A parameter is told where the scores of its values differ by more than those of shuffled samples, at "
+        "A parameter is constrained where the scores of its values differ by more than those of shuffled samples, at "
         f"{100 * LEVEL:.0f} % over all parameters and models together. The range holds every value whose score exceeds "
         "the lowest by no more than the score of the true value does where samples stand for the tests, in "
         f"{100 * LEVEL:.0f} % of them."
@@ -50,7 +50,7 @@ def calibration(content):
             "synthetic: the answers on these tell of the program that made them, not of concrete."
         )
     if found["left_out"]:
-        sentences.append(f"Not asked, as too many samples have no reading: {'; '.join(found['left_out'])}.")
+        sentences.append(f"Left out, as too many samples have no reading: {'; '.join(found['left_out'])}.")
     blocks = [Text(text), Items(tuple(sentences))]
     if not found["parameters"]:
         return Section("Calibration by all open tests", "calibration", tuple(blocks))
@@ -78,7 +78,7 @@ def _drawn(parameters):
 
 
 def answer_words(name, one):
-    """Answer of all tests on one parameter beside the value that the study takes, as a sentence."""
+    """Answer of all tests on one parameter against the value that the study takes, as a sentence."""
     answer, assumed = one["answers"][ALL], given(one["assumed"])
     if not answer["told"]:
         return f"{parameter_label(name)}: the tests tell nothing about it; {assumed} is neither borne out nor refused."
@@ -91,7 +91,7 @@ def span(answer):
     """Range of an answer in words."""
     lower, upper = answer["lower"], answer["upper"]
     if not answer["told"]:
-        return _NOT_TOLD
+        return _NOT_CONSTRAINED
     if lower is None and upper is None:
         return "no value is refused"
     if upper is None:
@@ -137,13 +137,13 @@ def tests_table(found):
     rows = []
     for (case, test, model), read in by_test.items():
         chances = (number(read[one]["chance"], 2) if one in read else MISSING for one in readings)
-        told = [
+        constrained = [
             f"{one['reading']}: {parameter_label(name)}, {span(answer)}"
             for one in read.values()
             for name, answer in one["answers"].items()
             if answer["told"]
         ]
-        rows.append((case, test, model_label(model), *chances, "; ".join(told) or "nothing by itself"))
+        rows.append((case, test, model_label(model), *chances, "; ".join(constrained) or "nothing by itself"))
     unlike = sum(one["chance"] < _UNLIKE for one in found["tests"])
     unsolved = sum(next(iter(read.values()))["unsolved"] for read in by_test.values())
     tail = (
@@ -175,7 +175,7 @@ def plot_calibration(found):
         axes.set_axis_off()
     entries = {model_label(model): Line2D([], [], color=lines[model]) for model in models}
     entries["all tests"] = Line2D([], [], color=BLACK, linewidth=_THICK)
-    entries["range, where told"] = Patch(facecolor=LIGHT_GREY, edgecolor="none")
+    entries["range, where constrained"] = Patch(facecolor=LIGHT_GREY, edgecolor="none")
     entries["the study's value"] = Line2D([], [], color=RED, linestyle=":")
     figure.legend(entries.values(), entries.keys(), loc="outside upper center", ncols=len(entries))
     return figure

@@ -1,1 +1,1 @@
-"""Models held against each other, beside the floor of the numerics of each."""
+"""Models held against each other, against the floor of the numerics of each."""

@@ -1,4 +1,4 @@
-"""The models of one case held against each other, block by block, beside the floor of the numerics of each."""
+"""The models of one case held against each other, block by block, against the floor of the numerics of each."""
 
 from itertools import combinations
 
@@ -33,8 +33,12 @@ from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.ensembles.levels import by_level
 
 MOST = 400  # samples of a model that are compared: each is held against each
-TOLD_APART_BY = 3.0  # standard deviations of a marker's noise that curves are apart when they have parted
-CHANGES = ("peak", "residual", "width")  # of a solver with other settings, told from the same samples
+PARTED_BY = 3.0  # standard deviations of a marker's noise that curves are apart when they have parted
+CHANGES = (
+    "peak",
+    "residual",
+    "width",
+)  # of a solver with other settings, distinguished from the same samples
 _MIDDLE = [0.5]
 _DESCRIBED = {
     "counted": ("samples that enter statistics", "1"),
@@ -131,8 +135,8 @@ def compare_models(ensembles, twins, measured):
             _alone(counted, seed),
             two_levels(ensembles),
             _changes(counted, seed),
-            _pairs(counted, TOLD_APART_BY * noise, seed),
-            _numerics(counted, twins, TOLD_APART_BY * noise),
+            _pairs(counted, PARTED_BY * noise, seed),
+            _numerics(counted, twins, PARTED_BY * noise),
             _scores(counted, None if measured is None else measured[0], seed),
         ],
         compat="equals",
@@ -143,7 +147,7 @@ def compare_models(ensembles, twins, measured):
         "title": "models of one case held against each other",
         "structure": structure,
         "synthetic": int(measured[0].attrs.get("synthetic", 0)) if measured else 0,
-        "parted_beyond": TOLD_APART_BY * noise,
+        "parted_beyond": PARTED_BY * noise,
     }
     return result
 

@@ -61,7 +61,7 @@ def models_apart(stripes, found):
     apart : list of Apart
         The largest difference first.
     tried : list of str
-        Names of the stripes with two models that can be told apart.
+        Names of the stripes with two models that can be distinguished.
 
     Notes
     -----

@@ -16,7 +16,7 @@ from blockshake.study.comparison.tables import (
 
 
 def models(content):
-    """Distances of every pair of models beside chance and numerics; None where the study has one model."""
+    """Distances of every pair of models against chance and numerics; None where the study has one model."""
     if len(content.study["models"]) < 2:
         return None
     blocks = [
@@ -24,7 +24,7 @@ def models(content):
             "Are two models farther apart than the samples and the numerics of each make them? The distance of two "
             "ensembles is the energy distance of Szekely and Rizzo (2013) at every time, mean over times and blocks: "
             "zero for equal ensembles, and the shift of two narrow ones. Random divisions of the same samples give the "
-            "distance that chance makes. Beside it stands the difference of single runs: the same sample by both "
+            "distance that chance makes. With it stands the difference of single runs: the same sample by both "
             "models, against a sample and its twin by one model, which differs by less than any test could tell. All "
             "displacements are along x and relative to the slab."
         ),

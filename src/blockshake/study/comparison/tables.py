@@ -44,7 +44,7 @@ def _block_table(case, name, caption):
     labels = (f"{model_label(model)} (n = {int(counted.sel(model=model))})" for model in case.responses)
     header = ("Block", *read, *labels)
     if {cell for row in rows for cell in row[1:]} == {MOVING}:
-        return Text(f"{case.name}: what displacement remains is not told, for every block moves. {_SWINGS}")
+        return Text(f"{case.name}: what displacement remains is unknown, for every block moves. {_SWINGS}")
     return Table(caption, header, tuple(rows), "l" + "r" * (len(header) - 1))
 
 
@@ -64,7 +64,7 @@ def _measured(case, name, marker):
 
 
 def pairs_table(content):
-    """Distances of every pair of models in every case, beside chance and the floor of their numerics."""
+    """Distances of every pair of models in every case, against chance and the floor of their numerics."""
     rows = []
     for stripe in content.stripes:
         found = stripe.differences
@@ -82,7 +82,7 @@ def pairs_table(content):
         "samples into two ensembles stay below. Difference: of the same sample by both models, mean over times and "
         "blocks, median over the n samples that both ran, with limits by order statistics. Floor: the same difference "
         "of one sample from its twin, at half the time step, by each of the two models. Parting: when the same sample "
-        f"by both models is first told apart, median. {MISSING}: too few samples, or no twin.",
+        f"by both models is first distinguished, median. {MISSING}: too few samples, or no twin.",
         (
             "Case", "Models", "Distance [mm]", "Chance [mm]", "Difference [mm]", "n", "Floors [mm]", "Parting [s]",
         ),

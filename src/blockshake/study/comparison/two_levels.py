@@ -9,7 +9,7 @@ from blockshake.dynamics.system import Status
 from blockshake.statistics.intervals import CONFIDENCE, SURE_FROM
 
 CHEAP = "nscd-rigid"
-_TOLD = ("value", "lower", "upper", "coefficient", "correlation", "gain")
+_ESTIMATES = ("value", "lower", "upper", "coefficient", "correlation", "gain")
 
 
 def two_level_mean(costly, cheap, many):
@@ -18,9 +18,9 @@ def two_level_mean(costly, cheap, many):
     Parameters
     ----------
     costly, cheap : float64 arrays, shape (n,)
-        Of both models for the same samples, at least 6.
+        For both models for the same samples, at least 6.
     many : float64 array, shape (N,)
-        Of the cheap model for these samples and others.
+        The cheap model for these samples and others.
 
     Returns
     -------
@@ -40,7 +40,7 @@ def two_level_mean(costly, cheap, many):
     """
     size = len(costly)
     if size < SURE_FROM or np.ptp(costly) == 0.0 or np.ptp(cheap) == 0.0:
-        return dict.fromkeys(_TOLD, np.nan)
+        return dict.fromkeys(_ESTIMATES, np.nan)
     centred, off = cheap - cheap.mean(), many.mean() - cheap.mean()
     squares = centred @ centred
     coefficient = centred @ costly / squares
@@ -51,8 +51,8 @@ def two_level_mean(costly, cheap, many):
     half = scipy.stats.t.ppf(0.5 + 0.5 * CONFIDENCE, size - 2) * np.sqrt(variance)
     gain = own / size / variance if variance > 0.0 else np.inf
     correlation = np.corrcoef(costly, cheap)[0, 1]
-    told = value, value - half, value + half, coefficient, correlation, gain
-    return dict(zip(_TOLD, map(float, told), strict=True))
+    estimates = value, value - half, value + half, coefficient, correlation, gain
+    return dict(zip(_ESTIMATES, map(float, estimates), strict=True))
 
 
 def two_levels(ensembles):
@@ -83,15 +83,15 @@ def two_levels(ensembles):
             both = [one.sel(sample=own["sample"]).to_numpy() for one in (own, many)]
             row = {"mean": both[0].mean(), **two_level_mean(*both, many.to_numpy())}
         rows.append(row)
-    told = pd.DataFrame(rows, columns=["mean", *_TOLD], dtype=float)
+    estimates = pd.DataFrame(rows, columns=["mean", *_ESTIMATES], dtype=float)
     return xr.Dataset(
         {
-            "mean_peak": ("model", told["mean"]),
-            "two_level_peak": ("model", told["value"]),
-            "two_level_peak_interval": (("bound", "model"), told[["lower", "upper"]].T),
-            "coefficient": ("model", told["coefficient"]),
-            "peak_correlation": ("model", told["correlation"]),
-            "variance_gain": ("model", told["gain"]),
+            "mean_peak": ("model", estimates["mean"]),
+            "two_level_peak": ("model", estimates["value"]),
+            "two_level_peak_interval": (("bound", "model"), estimates[["lower", "upper"]].T),
+            "coefficient": ("model", estimates["coefficient"]),
+            "peak_correlation": ("model", estimates["correlation"]),
+            "variance_gain": ("model", estimates["gain"]),
         },
         {"bound": ["lower", "upper"]},
     )

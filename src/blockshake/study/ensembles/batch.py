@@ -102,7 +102,7 @@ def samples_of(files, rows):
 
 
 def batch_rows(batch, files):
-    """Sampled values of a batch, columns the dotted names, contact stiffness beside them where the model has any.
+    """Sampled values of a batch, columns the dotted names, contact stiffness with them where the model has any.
 
     ``batch``: first and last sample, such as ``010-019``, or `HALF_STEP`; ``files``: attributes ``design`` and
     ``stiffness``, CSV tables by sample, the latter empty without contact stiffness.

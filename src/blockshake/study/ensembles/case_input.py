@@ -13,7 +13,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.campaigns.clocks import since
 from blockshake.measurement.campaigns.commanded_motion import follow
-from blockshake.measurement.campaigns.starting_places import standing
+from blockshake.measurement.campaigns.initial_poses import initial_poses
 from blockshake.measurement.motion.measured_base import base_as_motion, draw_base, measure_base
 from blockshake.measurement.sensors.markers import driven_marker, unread_directions
 from blockshake.quantities import FACTOR, HEADING
@@ -67,7 +67,7 @@ def structure_of_case(case, base):
     ``base``: from `measured_input`, or its file; none where the case names no test.
     """
     structure = load_structure(case["structure"])
-    return standing(structure, _loaded(base)) if base else structure
+    return initial_poses(structure, _loaded(base)) if base else structure
 
 
 def commanded(case):
@@ -133,7 +133,7 @@ def driving_motions(case, base, seed):
     base : xarray.Dataset, path or None
         From `measured_input`, or its file; not used where the input is commanded.
     seed : int
-        Of the design: a sample of another design has another draw of the measured motion, or of the records.
+        For the design: a sample of another design has another draw of the measured motion, or of the records.
 
     Notes
     -----
@@ -173,8 +173,8 @@ def _against(base, command, duration):
     time = base["time"].to_numpy() - base.attrs["start"]
     inside = (time >= 0.0) & (time <= duration)
     moved = base["displacement"].transpose("time", "channel").to_numpy()[inside, :3]
-    asked = command.evaluate(time[inside])[:, 0]
-    followed = follow(moved, asked, 0.0)
+    commanded = command.evaluate(time[inside])[:, 0]
+    followed = follow(moved, commanded, 0.0)
     if followed is None or not base.attrs["follows"]:
         return np.nan, np.nan
-    return float(followed.share[0]), float(np.std(moved[:, 0] - asked))
+    return float(followed.share[0]), float(np.std(moved[:, 0] - commanded))

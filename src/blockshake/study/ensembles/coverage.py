@@ -69,7 +69,7 @@ def coverage(measured, ensemble, marker_noise):
     then, for stretches as long as the motion's correlation. The reference, leave-one-out over
     the members, carries that correlation. Its bounds come from one member less than the measured
     curve's, which makes it a little lower: cautious, as 1 / n. A noise-free reference would fail every
-    measured curve wherever the band is thinner than the noise. There coverage says nothing at all, of any curve, and
+    measured curve wherever the band is thinner than the noise. There coverage means nothing at all, of any curve, and
     the distance decides.
     """
     read, members, curves, readings = compared_curves(measured, ensemble, marker_noise, _NOISE_SEED)

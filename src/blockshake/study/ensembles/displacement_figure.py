@@ -1,4 +1,4 @@
-"""Displacement of the blocks, ensembles beside a measured curve (the paper's Figs. 11 to 14)."""
+"""Displacement of the blocks, ensembles next to a measured curve (the paper's Figs. 11 to 14)."""
 
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch

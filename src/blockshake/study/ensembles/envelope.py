@@ -1,4 +1,4 @@
-"""Envelopes: what an ensemble says of the displacement at each time."""
+"""Envelopes: what an ensemble states of the displacement at each time."""
 
 import numpy as np
 import xarray as xr
@@ -86,7 +86,7 @@ def envelope(ensemble, largest_drift, displacement=None):
         ``contributing(time)``: samples with a value at that time; ``still_moving(marker)``: share of those with a
         residual of which `still_moves` holds relative to the slab; ``collapse_probability`` and
         ``drift_probability(marker)`` [1] with its ``largest_drift(marker)`` [m]. NaN where no sample has a value. The
-        statistics of single numbers have their 95 % limits beside them, ``NAME_interval(bound, ...)``, those of
+        statistics of single numbers have their 95 % limits with them, ``NAME_interval(bound, ...)``, those of
         quantiles NaN of too few samples (`quantile_ranks`). Attributes ``samples`` and ``counted``: how many runs there
         were and how many enter.
 

@@ -15,12 +15,12 @@ def levels_of(case, seed, size):
     case : dict
         Entries of the case in the configuration.
     seed, size : int
-        Of the design.
+        The design.
 
     Returns
     -------
     dict of int to float
-        In the unit of the case's measure of intensity; empty where no level has two samples, or none is asked for.
+        In the unit of the case's measure of intensity; empty where no level has two samples, or none is requested.
     """
     if case.get("intensity") is None:
         return {}

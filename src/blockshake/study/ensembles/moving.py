@@ -1,4 +1,4 @@
-"""Blocks of samples in space beside the measured markers, moving in the page; the print has a still of them."""
+"""Blocks of samples in space against the measured markers, moving in the page; the print has a still of them."""
 
 import base64
 import json
@@ -72,7 +72,7 @@ def moving_samples(case):
 def plot_still(case):
     """Figure of the median sample by every model at the time of its largest shift, with the measured markers.
 
-    Magnified as `usual_magnification` says; markers on faces that look away are left out.
+    Magnified as `usual_magnification` states; markers on faces that look away are left out.
     """
     magnification = usual_magnification(case)
     scene = Scene(case.structure, "3d")

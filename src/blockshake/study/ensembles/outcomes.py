@@ -36,8 +36,8 @@ def count_outcomes(status):
 
 def unfinished(samples):
     """Samples of `sample_figures` that did not complete, or that have a remark, a dataset each."""
-    told = (samples["status"].values != "completed") | (samples["reason"].values.astype(str) != "")
-    return [samples.sel(sample=one) for one in samples["sample"].values[told]]
+    remarked = (samples["status"].values != "completed") | (samples["reason"].values.astype(str) != "")
+    return [samples.sel(sample=one) for one in samples["sample"].values[remarked]]
 
 
 def numerical_figure(samples, name, statistic):

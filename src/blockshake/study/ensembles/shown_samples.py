@@ -14,7 +14,7 @@ FRAME_RATE = 25.0  # Hz
 
 
 def shown_of_case(batches):
-    """`shown_samples` of the samples in these files, of which the histories of those shown alone are read."""
+    """`shown_samples` of the samples in these files, whose histories are read of the samples shown alone."""
     figures = join_batches(batches, (*POSES, "marker_displacement"))
     counted = counted_samples(figures)
     wanted = counted["sample"].values[list(_words(counted))]

@@ -1,1 +1,1 @@
-"""An extended study: what a cause that measured tests speak for changes, in the units of whoever decides."""
+"""An extended study: what a cause that measured tests support changes, in the units of whoever decides."""

@@ -1,4 +1,4 @@
-"""Change of the responses by a cause: the same samples of a case with and without it, beside a measured test."""
+"""Change of the responses by a cause: the same samples of a case with and without it, next to a measured test."""
 
 import numpy as np
 import xarray as xr
@@ -131,7 +131,7 @@ def _responses(ensemble):
 
 
 def _drawn_quantiles(values, weights, share):
-    """Quantile of values drawn as often as each row of the weights says, (n_draws,)."""
+    """Quantile of values drawn as often as each row of the weights states, (n_draws,)."""
     drawn = (np.repeat(values, row.astype(int)) for row in weights)
     return np.array([sample_quantiles(one, (share,))[0] for one in drawn])
 

@@ -1,4 +1,4 @@
-"""Section on an extended study: changes by the cause, beside what was measured, and its gain on measured tests."""
+"""Section on an extended study: changes by the cause, against what was measured, and its gain on measured tests."""
 
 import numpy as np
 
@@ -36,7 +36,7 @@ def extension(content):
     blocks = [
         Text(
             "Every sample was simulated twice, with the same values of all other variables: by the structure without "
-            "and by that with the cause which measured tests speak for. Drift: largest displacement along x of any "
+            "and by that with the cause which measured tests support. Drift: largest displacement along x of any "
             "block's markers from the slab. Uplift: largest of any joint, at the middle of the face. Peaks of samples "
             "that fell are lower limits."
         ),
@@ -90,19 +90,19 @@ def sentences(content, name):
 
 def change_sentence(of, cause, result):
     """Which quantities of a model a cause changes beyond their limits, and which not."""
-    told, silent = [], []
+    changed, silent = [], []
     for words, show, at in _known(result):
         change = at.sel(side="change")
         low, high = change["value_interval"].values
         if low > 0.0 or high < 0.0:
             both = " to ".join(show(value) for value in at["value"].values[:2])
-            told.append(f"{words} from {both}, by {limited(change, 'value', show)}")
+            changed.append(f"{words} from {both}, by {limited(change, 'value', show)}")
         else:
             silent.append(words.partition(" [")[0])
     return (
         f"{of}, {int(result['paired'])} pairs of samples: {cause} changes "
-        f"{'; '.join(told) or 'nothing beyond its limits'}."
-        + (f" Not told from no change: {', '.join(silent)}." if silent else "")
+        f"{'; '.join(changed) or 'nothing beyond its limits'}."
+        + (f" Not distinguished from no change: {', '.join(silent)}." if silent else "")
     )
 
 

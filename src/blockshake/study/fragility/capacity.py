@@ -89,7 +89,7 @@ def likely_capacities(lower, upper, weight=1.0):
     lower, upper
         Of `fit_capacity`, which finds a dispersion above 0 in them.
     weight : float
-        Of a capacity in the likelihood [1].
+        A capacity in the likelihood [1].
 
     Returns
     -------

@@ -42,7 +42,7 @@ def climb_samples(runs, rows, ladder, store, seed=0):
     ladder : Ladder
     store : Store
     seed : int
-        Of the design, by which samples draw records.
+        For the design, by which samples draw records.
 
     Returns
     -------
@@ -61,9 +61,9 @@ def climb_samples(runs, rows, ladder, store, seed=0):
     motions = driving_motions(runs.case | {"scale": 1.0, "input": COMMANDED}, None, seed)
     climbs = []
     for sample, row in rows.iterrows():
-        rungs = climb(structure, runs, motions(sample, row), runs.parameters(row, structure), ladder, store)
-        climbs.append(rungs)
-        store.say(f"{structure.file.name} {runs.model} sample {sample}: {_words(rungs)}")
+        levels = climb(structure, runs, motions(sample, row), runs.parameters(row, structure), ladder, store)
+        climbs.append(levels)
+        store.say(f"{structure.file.name} {runs.model} sample {sample}: {_words(levels)}")
     limits = xr.DataArray(
         drift_limits(structure, ladder.largest_drift), {"body": list(structure.body_names)}, ["body"]
     )
@@ -79,7 +79,7 @@ def climb(structure, runs, motion, parameters, ladder, store):
     runs : CaseRuns
         With the duration of the case.
     motion : GroundMotion
-        Of the factor 1.
+        The factor 1.
     parameters : dict
         Parameters of the run by dotted name, as `simulate` takes them.
     ladder : Ladder
@@ -89,29 +89,29 @@ def climb(structure, runs, motion, parameters, ladder, store):
     Returns
     -------
     list of dict
-        By rung: ``scale``, ``status``, ``reason`` and ``drift_ratio``, the largest displacement along x of a block
-        against the slab over its limit [1]; and ``passed``. The last rung is the first that did not pass: it did not
+        By level: ``scale``, ``status``, ``reason`` and ``drift_ratio``, the largest displacement along x of a block
+        against the slab over its limit [1]; and ``passed``. The last level is the first that did not pass: it did not
         complete, or a block's displacement exceeded its limit.
 
     Notes
     -----
     Zhou et al. (2023), section Case Study: first test at 50 %, increments of about 25 %.
     """
-    rungs, limits = [], drift_limits(structure, ladder.largest_drift)
+    levels, limits = [], drift_limits(structure, ladder.largest_drift)
     for scale in ladder.scales.tolist():
         driven_by = scaled(motion, scale, motion.name)
         step, duration = runs.settings["time_step"], runs.case["duration"]
-        outcome = store.value(_Rung(structure, driven_by, runs.model, parameters, step, duration))
+        outcome = store.value(_Level(structure, driven_by, runs.model, parameters, step, duration))
         ratio = float(np.nanmax(outcome.pop("drift") / limits))
         passed = outcome["status"] == Status.COMPLETED and ratio <= 1.0
-        rungs.append({"scale": scale, **outcome, "drift_ratio": ratio, "passed": passed})
+        levels.append({"scale": scale, **outcome, "drift_ratio": ratio, "passed": passed})
         if not passed:
             break
-    return rungs
+    return levels
 
 
 @dataclass(frozen=True)
-class _Rung(Unit):
+class _Level(Unit):
     """How one run ended, and the largest drift of each body along x in it [m]."""
 
     structure: Structure
@@ -132,22 +132,22 @@ class _Rung(Unit):
         return {"status": run.attrs["status"], "reason": run.attrs["reason"], "drift": drift}
 
 
-def _words(rungs):
-    last = rungs[-1]
+def _words(levels):
+    last = levels[-1]
     return f"{'passed' if last['passed'] else 'did not pass'} {last['scale']:g}, {last['status']}"
 
 
 def gathered(samples, climbs, scales, largest_drift):
-    """Dataset of `climb_samples` from the rungs of each sample that `climb` returns."""
+    """Dataset of `climb_samples` from the levels of each sample that `climb` returns."""
     ratio, passed = np.full((2, len(samples), len(scales)), np.nan)
     bounds = np.zeros((len(samples), 2))
-    for row, rungs in enumerate(climbs):
-        known = [rung for rung in rungs if rung["status"] in FINISHED]
-        stood = [rung["scale"] for rung in known if rung["passed"]]
-        fell = [rung["scale"] for rung in known if not rung["passed"]]
+    for row, levels in enumerate(climbs):
+        known = [level for level in levels if level["status"] in FINISHED]
+        stood = [level["scale"] for level in known if level["passed"]]
+        fell = [level["scale"] for level in known if not level["passed"]]
         bounds[row] = max(stood, default=0.0), min(fell, default=np.inf)
-        ratio[row, : len(known)] = [rung["drift_ratio"] for rung in known]
-        passed[row, : len(known)] = [rung["passed"] for rung in known]
+        ratio[row, : len(known)] = [level["drift_ratio"] for level in known]
+        passed[row, : len(known)] = [level["passed"] for level in known]
     result = xr.Dataset(
         {
             "drift_ratio": (("sample", "scale"), ratio),
@@ -155,8 +155,8 @@ def gathered(samples, climbs, scales, largest_drift):
             "capacity_lower": ("sample", bounds[:, 0]),
             "capacity_upper": ("sample", bounds[:, 1]),
             "largest_drift": largest_drift,
-            "status": ("sample", [str(rungs[-1]["status"]) for rungs in climbs]),
-            "reason": ("sample", [str(rungs[-1]["reason"]) for rungs in climbs]),
+            "status": ("sample", [str(levels[-1]["status"]) for levels in climbs]),
+            "reason": ("sample", [str(levels[-1]["reason"]) for levels in climbs]),
         },
         coords={"sample": samples.astype(np.int64), "scale": scales},
     )

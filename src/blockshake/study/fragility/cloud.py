@@ -182,9 +182,9 @@ def cloud_of_case(samples, case, seed, largest_drift):
     case : dict
         ``structure``, ``motion``, ``scale``, ``baseline`` and ``intensity`` of the configuration.
     seed : int
-        Of the design.
+        The design.
     largest_drift : float or None
-        Of `drift_limits`.
+        `drift_limits`.
 
     Returns
     -------
@@ -220,13 +220,13 @@ def cloud_of_case(samples, case, seed, largest_drift):
         result[name] = "sample", values
     record = ("sample", [one.name for one in shaken.records], {"long_name": "motion of the sample"})
     result = result.assign_coords(sample=counted["sample"], record=record)
-    unit = "m/s" if shaken.asked.measure == "pgv" else "m/s2"
+    unit = "m/s" if shaken.target.measure == "pgv" else "m/s2"
     describe(result, {name: (words, _UNITS.get(name, unit)) for name, words in _DESCRIBED.items()})
     result.attrs = {
         "title": "fragility over the intensity of drawn motions",
-        "measure": shaken.asked.measure,
-        "period": shaken.asked.period or 0.0,
-        "levels": len(shaken.asked.levels),
+        "measure": shaken.target.measure,
+        "period": shaken.target.period or 0.0,
+        "levels": len(shaken.target.levels),
         "records": len({one.name for one in shaken.records}),
         "weight": shaken.weight,
         "slope": float(cloud.slope),
@@ -250,7 +250,7 @@ def _nearest(counted, structure, limits):
 class Shaken(NamedTuple):
     """Motions by which samples were shaken, in their order, before any heading turns them."""
 
-    asked: Intensity
+    target: Intensity
     records: list  # of SetRecord
     motions: list  # of GroundMotion
     intensity: np.ndarray  # float64 (n_samples,); in the unit of the measure
@@ -267,10 +267,10 @@ def shaken_by(samples, case, seed):
     records = [drawn.draw(sample, seed) for sample in samples["sample"].values]
     factors = values.get(FACTOR, pd.Series(1.0, values.index)).to_numpy()
     own = [drawn.motion(record) for record in records]
-    told = [case["scale"] * one.level if one.level else drawn.intensity.of(motion)
+    measures = [case["scale"] * one.level if one.level else drawn.intensity.of(motion)
             for one, motion in zip(records, own, strict=True)]  # fmt: skip
     motions = [scaled(motion, factor, motion.name) for motion, factor in zip(own, factors, strict=True)]
-    return Shaken(drawn.intensity, records, motions, factors * np.array(told))
+    return Shaken(drawn.intensity, records, motions, factors * np.array(measures))
 
 
 def fragilities(shaken, demand, fell, limit):
@@ -291,11 +291,11 @@ def fragilities(shaken, demand, fell, limit):
     result : xarray.Dataset
         By ``fit`` the statistics of `cloud_of_case`.
     cloud : Cloud
-        Of the regression.
+        The regression.
     """
     intensity, weight = shaken.intensity, shaken.weight
     failed = fell | (demand > limit)
-    differ = len(np.unique(intensity)) > 1  # else no curve is told
+    differ = len(np.unique(intensity)) > 1  # else there is no curve
     fine = np.geomspace(intensity.min(), intensity.max(), POINTS) if differ else np.arange(1.0, POINTS + 1.0)
     cloud, likely = fit_cloud(intensity, demand, fell, limit, weight)
     bounds = np.where(failed, 0.0, intensity), np.where(failed, intensity, np.inf)

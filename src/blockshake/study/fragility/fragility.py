@@ -17,7 +17,7 @@ ESTIMATES = {
     "safe": lambda fragility, fine: fragility.level(SAFE),
     "curve": lambda fragility, fine: fragility.probability(fine),
 }
-"""What is told of a fragility with its limits: functions of it, and of levels."""
+"""Estimates of a fragility with their limits: functions of it, and of levels."""
 _DESCRIBED = {
     "known": ("samples of which it is known whether they pass this scale", "1"),
     "share": ("share of these that do not pass it, or did not pass a lower one", "1"),

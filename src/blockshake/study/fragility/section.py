@@ -31,12 +31,13 @@ def fragility(content):
 
 def _climbs(content):
     """Blocks on the samples that climb."""
-    asked = content.study["fragility"]
+    settings = content.study["fragility"]
     limits = millimetre_range(np.hstack([one["largest_drift"] for one in content.fragility.values()]))
     one = any(content.cases[name].settings.get("intensity") is None for name in content.fragility)
     return [
         Text(
-            f"Samples that climb the ladder by {model_label(asked['model'])}: each is shaken by the case's commanded "
+            f"Samples that climb the ladder by {model_label(settings['model'])}: each is shaken by the case's "
+            f"commanded "
             "motion at rising factors, from the restored stack each time, until it collapses, still falls as its "
             f"window ends, or the mass centre of a block moves from the slab by more than its limit, {limits} mm, "
             "which counts as a potential collapse. The capacity of a sample lies between the last factor that it "
@@ -85,7 +86,7 @@ def words(content, name):
             if passed
             else f"none passes the lowest factor, {given(result['scale'][0])}"
         )
-        return f"{who}: {side}, so that no fragility is told.{less}"
+        return f"{who}: {side}, so that there is no fragility.{less}"
     if float(result["dispersion"]) == 0.0:
         low, high = float(result["capacity_lower"].max()), float(result["capacity_upper"].min())
         return (

@@ -38,7 +38,7 @@ def limit_states_of_case(batches, case, base, linked, limits, seed):
     limits : dict of str to dict
         `LimitState` by name.
     seed : int
-        Of the design.
+        The design.
 
     Returns
     -------
@@ -132,8 +132,8 @@ def _over_intensity(samples, case, seed, result):
     over = over.assign_coords(
         intensity=("sample", shaken.intensity), record=("sample", [one.name for one in shaken.records])
     )
-    levels = np.unique(shaken.intensity) if shaken.asked.levels else np.empty(0)
-    if len(levels) == len(shaken.asked.levels) and len(levels):
+    levels = np.unique(shaken.intensity) if shaken.target.levels else np.empty(0)
+    if len(levels) == len(shaken.target.levels) and len(levels):
         outcomes = [result["exceeded"].to_numpy()[shaken.intensity == level] for level in levels]
         shares = np.array([[_share(column) for column in at.T] for at in outcomes]).reshape(
             len(levels), -1, 3
@@ -141,5 +141,5 @@ def _over_intensity(samples, case, seed, result):
         over = over.assign_coords(level=levels)
         over["level_probability"] = ("level", "limit"), shares[..., 0]
         over["level_probability_interval"] = ("bound", "level", "limit"), np.moveaxis(shares[..., 1:], 2, 0)
-    over.attrs = {"intensity_measure": shaken.asked.measure, "period": shaken.asked.period or 0.0}
+    over.attrs = {"intensity_measure": shaken.target.measure, "period": shaken.target.period or 0.0}
     return over

@@ -8,7 +8,7 @@ from blockshake.dynamics.record_set import DrawnMotions
 from blockshake.store import load_made
 
 _ENDINGS = ("status", "reason", "end_time")
-# responses by their name in the samples' files: along what they are told, and the unit
+# responses by their name in the samples' files: along what they are reported, and the unit
 _RESPONSES = {
     "peak": ("marker", "m"),
     "residual": ("marker", "m"),

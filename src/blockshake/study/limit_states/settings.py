@@ -66,7 +66,7 @@ class LimitState(Strict):
     )
     joint: tuple[str, str] | None = Field(
         None,
-        description="two bodies, in either order, that touch or, of an impact velocity, stand beside each other",
+        description="two bodies, in either order, that touch or, of an impact velocity, stand next to each other",
     )
     cases: tuple[str, ...] = Field(
         (), description="names of cases; by default all whose structure has the bodies"

@@ -40,7 +40,7 @@ def answer(content):
     theory = {one.stripe: theory_of(named[one.stripe], one) for one in reversed(apart)}
     shown = named[most_telling(found)]
     blocks = [
-        Text(_asked(content)),
+        Text(_question(content)),
         Box(_verdict(content, found), _facts(stripes, found, shown, theory)),
         *_synthetic(content),
         _figure(content, found, shown),
@@ -59,7 +59,7 @@ def answer(content):
     return Section("Answer", "answer", tuple(blocks))
 
 
-def _asked(content):
+def _question(content):
     """The cases, models and samples in a sentence."""
     cases = content.cases.values()
     sizes = [one.samples.sizes["sample"] for case in cases for one in case.responses.values()]
@@ -67,7 +67,7 @@ def _asked(content):
     kinds = dict.fromkeys(parameter_label(name).split(" of ")[0].split(",")[0] for name in used)
     if any("records" in content.motions[case.motion].attrs for case in cases):
         kinds |= {"ground motion": None}
-    return _WORDS.asked(
+    return _WORDS.question(
         cases=list(content.cases),
         motions=list(dict.fromkeys(_under(content, case) for case in cases)),
         seconds=list(dict.fromkeys(given(case.settings["duration"]) for case in cases)),
@@ -100,8 +100,12 @@ def _verdict(content, found):
         sides[side].append(name)
     best = {name: evidence(ended) for name, ended in found.items()}
     stand = [(model, one) for name in sides["stand"] for model, one in best[name].items()]
-    told = {name: best[name] | {m: one for m, one in found[name].items() if one.collapsed} for name in found}
-    told = {name: dict(sorted(one.items(), key=lambda item: -item[1].share)) for name, one in told.items()}
+    reported = {
+        name: best[name] | {m: one for m, one in found[name].items() if one.collapsed} for name in found
+    }
+    reported = {
+        name: dict(sorted(one.items(), key=lambda item: -item[1].share)) for name, one in reported.items()
+    }
     sentences = _WORDS.items(
         "verdict",
         sides={side: content.places(names) for side, names in sides.items()},
@@ -114,7 +118,7 @@ def _verdict(content, found):
             "sure": all(one.is_sure for _, one in stand),
             "upper": max((one.limits[1] for _, one in stand), default=0.0),
         },
-        told=told,
+        reported=reported,
         lower=min((one.limits[0] for name in sides["fall"] for one in best[name].values()), default=0.0),
     )
     return "\n".join(sentences)
@@ -284,7 +288,7 @@ def _intensities(content):
 
 
 def _blows(found):
-    """How often blocks that stand apart strike each other and how fast, a sentence a case, and what is not told."""
+    """How often blocks that stand apart strike each other and how fast, a sentence a case, and what is unknown."""
     struck = {name: ended for name, ended in found.items() if any(one.struck for one in ended.values())}
     apart = any(len(one.leaves) > 1 for ended in found.values() for one in ended.values())
     return _WORDS.items("blows", struck=dict(list(struck.items())[:MOST]), apart=apart)

@@ -11,7 +11,7 @@ from blockshake.pages.wording import model_label
 
 _COLORS = (BLUE, ORANGE, GREEN, RED)
 _HEIGHT = 0.036  # m of paper
-_BESIDE = 0.02  # of a level, between models drawn at it
+_BETWEEN = 0.02  # of a level, between models drawn at it
 _LEAST = 0.1  # mm, drawn for all that moves less
 _IN_A_ROW, _CURVES = 4, 6.0  # structures, and width of the curves over that of one
 
@@ -60,10 +60,10 @@ def plot_answer(structures, case, marker):
 
 
 def _draw_levels(axes, case, marker):
-    """Largest displacement of every run over its level, models beside each other; crosses are those that collapsed."""
+    """Largest displacement of every run over its level, models next to each other; crosses are those that collapsed."""
     for place, ((model, one), color) in enumerate(zip(case.responses.items(), _COLORS, strict=False)):
         at = np.array([case.levels[int(sample)] for sample in one.samples["sample"].values])
-        at *= 1.0 + _BESIDE * (place - 0.5 * (len(case.responses) - 1))
+        at *= 1.0 + _BETWEEN * (place - 0.5 * (len(case.responses) - 1))
         peak = np.maximum(1e3 * one.samples["peak"].sel(frame="slab", marker=marker).to_numpy(), _LEAST)
         fell = np.isin(one.samples["status"].values, FALLEN)
         axes.plot(

@@ -57,7 +57,7 @@ class Outcome(NamedTuple):
 
     @property
     def is_sure(self):
-        """Whether there are enough samples for limits of a median; fewer are told as runs."""
+        """Whether there are enough samples for limits of a median; fewer are reported as runs."""
         return self.counted >= SURE_FROM
 
 

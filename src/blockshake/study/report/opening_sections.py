@@ -198,7 +198,7 @@ def _motions_table(motions):
 
 
 def _bases_table(content):
-    """The slab's motion in the tests that the cases are compared with, beside what was commanded."""
+    """The slab's motion in the tests that the cases are compared with, against what was commanded."""
     rows = []
     for case in content.cases.values():
         base = case.base

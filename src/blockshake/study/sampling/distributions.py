@@ -187,7 +187,7 @@ class OfScipy(_ByQuantiles):
         rest = {name: value for name, value in given.items() if name not in ("mean", "cov")}
         try:
             standard = cls.model_validate(rest)._frozen
-        except ValidationError:  # told once the whole is validated
+        except ValidationError:  # reported once the whole is validated
             return rest
         scale = moments[1] * abs(moments[0]) / float(standard.std())
         return rest | {"loc": moments[0] - scale * float(standard.mean()), "scale": scale}

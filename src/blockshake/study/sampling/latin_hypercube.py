@@ -25,7 +25,7 @@ class SampleDesign:
 
     # pandas.DataFrame, shape (size, n_variables); one row a sample, columns the dotted names, SI
     values: pd.DataFrame
-    # target, correlation: pandas.DataFrame, shape (n_variables, n_variables); correlation asked for and
+    # target, correlation: pandas.DataFrame, shape (n_variables, n_variables); correlation requested and
     # reached
     target: pd.DataFrame
     correlation: pd.DataFrame

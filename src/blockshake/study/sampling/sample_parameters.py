@@ -61,7 +61,7 @@ def own_value(structure, name):
 
 
 def unused_variables(variables, model, parameters):
-    """Variables that cannot matter: controls that a sound measure must find at the level of chance.
+    """Variables that cannot matter: controls that a faultless measure must find at the level of chance.
 
     Dotted names. ``parameters``: what a sample gives to the structure, from `sample_parameters`, without what it lacks.
     """

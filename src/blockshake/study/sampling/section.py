@@ -24,7 +24,7 @@ def samples(content):
                 "in its order."
                 if content.study["ensemble"].get("table")
                 else f"Latin hypercube of {summary['size']} samples, seed {summary['seed']}; each stratum is "
-                f"represented by its {summary['stratum']}. Correlation asked for: {target}; the "
+                f"represented by its {summary['stratum']}. Correlation requested: {target}; the "
                 f"{summary['correlation_kind']} correlation differs from it by "
                 f"{number(summary['largest_correlation_error'])} at most."
             )
@@ -71,7 +71,7 @@ def _fewer_samples(content):
 
 
 def _table(content):
-    """Mean and coefficient of variation asked for and reached."""
+    """Mean and coefficient of variation requested and reached."""
     rows = []
     for name, target in content.distributions.items():
         factor, unit = printed(parameter_unit(name))
@@ -90,7 +90,7 @@ def _table(content):
 
 
 def plot_samples(design, distributions):
-    """Figure of the density of each sampled variable beside its target: the paper's Fig. 8.
+    """Figure of the density of each sampled variable next to its target: the paper's Fig. 8.
 
     ``design``: one row a sample, columns the dotted names, SI; ``distributions``: targets by dotted name.
     """

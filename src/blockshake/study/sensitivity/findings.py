@@ -10,7 +10,7 @@ from blockshake.pages.words import span, whole_percent
 from blockshake.study.ensembles.envelope import STILL
 
 SHARED = 0.05  # r squared of two variables beyond which they are said to share their indices
-_TOLD = 3  # pairs of such variables
+_MOST_NAMED = 3  # pairs of such variables
 _WORDS = {
     "first_order": (
         "Shown to explain some of that by itself:", "No variable is shown to explain any of that by itself", "share",
@@ -74,11 +74,11 @@ def shared_words(result):
     shared = sorted((pair for pair in pairs if known[pair] ** 2 > SHARED), key=lambda pair: -abs(known[pair]))
     if not shared:
         return f"no two variables have r squared beyond {SHARED}"
-    told = "; ".join(
+    named = "; ".join(
         f"{parameter_label(names[one])} and {parameter_label(names[other])}, r {known[one, other]:.2f}"
-        for one, other in shared[:_TOLD]
+        for one, other in shared[:_MOST_NAMED]
     )
-    return f"{len(shared)} of {len(pairs)} pairs of variables share their indices, r squared beyond {SHARED}: {told}"
+    return f"{len(shared)} of {len(pairs)} pairs of variables share their indices, r squared beyond {SHARED}: {named}"
 
 
 def quiet_markers(result, markers, noise):

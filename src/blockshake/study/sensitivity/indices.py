@@ -50,7 +50,7 @@ def indices_of_case(samples, sensitivity, limits, seed, levels):
     limits : path or None
         File from `limit_states_of_case`, where the study has limit states.
     seed : int
-        Of the design.
+        The design.
     levels : dict of int to float
         From `levels_of`.
 
@@ -230,9 +230,9 @@ def shapley_effects(function, correlation, generator):
     Parameters
     ----------
     function : callable
-        Of scores (n, n_inputs): values (n_functions, n).
+        For scores (n, n_inputs): values (n_functions, n).
     correlation : float64 array, shape (n_inputs, n_inputs)
-        Of the inputs, which have unit variance.
+        For the inputs, which have unit variance.
     generator : numpy.random.Generator
 
     Returns

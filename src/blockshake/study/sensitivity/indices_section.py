@@ -24,7 +24,7 @@ def shares(content):
         "part what variables that depend on each other explain together (Owen 2014). The total Sobol index, of "
         "independent variables alone, holds all interactions. Brackets: 95 %, of the surrogate's error and of the "
         "sampling. The surrogate's quality is the share of the variance that it predicts of runs left out one by one, "
-        "and of every fifth run by the others. Below 0.7, as near a collapse, the shares cannot be told."
+        "and of every fifth run by the others. Below 0.7, as near a collapse, the shares cannot be determined."
     )
     heads = ("Case", "Model", "Response", "Left out", "Held out", "Shapley effects", "Total indices")
     return Section("Shares of the variables", "shares", (
@@ -36,7 +36,7 @@ def _row(one):
     """Quality of the surrogate, and the largest shares in words."""
     quality = [number(float(one[name]), 2) for name in ("left_out", "held_out")]
     if one["shapley"].isnull().all():
-        return *quality, "cannot be told", MISSING
+        return *quality, "cannot be determined", MISSING
     return *quality, *(_largest(one, name) for name in ("shapley", "total"))
 
 

@@ -6,7 +6,7 @@ Outputs are arrays (n_samples, n_outputs, n_components): a number has one compon
 import numpy as np
 import scipy
 
-FEWEST_DEGREES = 5  # of freedom below which a partial correlation says nothing
+FEWEST_DEGREES = 5  # of freedom below which a partial correlation states nothing
 _NEGLIGIBLE = 1e-9  # of a standardised slope, and of a share of the variance
 FEWEST_SAMPLES = 6  # below which no class of two samples and its rival remain
 

@@ -28,16 +28,16 @@ def sensitivities(content):
 
 def _shared(stripes):
     """Variables that share their indices, and samples that did not complete, in a sentence for results alike."""
-    told, few = {}, []
+    by_words, few = {}, []
     for stripe in stripes:
         for model, one in stripe.responses.items():
             history, peak = (int(one.sensitivity["used"].sel(quantity=name)) for name in ("history", "peak"))
             if np.isfinite(one.sensitivity["spread"]).any():
                 row = stripe.name, model, one.samples.sizes["sample"], history, peak
-                told.setdefault(shared_words(one.sensitivity), []).append(row)
+                by_words.setdefault(shared_words(one.sensitivity), []).append(row)
             else:
                 few.append((stripe.name, model, history))
-    sentences = [_CAUSES.shared(words, runs) for words, runs in told.items()]
+    sentences = [_CAUSES.shared(words, runs) for words, runs in by_words.items()]
     return (*sentences, *([_CAUSES.few(few)] if few else []))
 
 
@@ -53,7 +53,9 @@ def _of_stripe(stripe):
             nothing.append((model, top, float(spread.max())))
         elif np.isfinite(spread).any():
             quiet.append(model)
-    sentences = [_CAUSES.told(model, sentence(result, top, bodies[top])) for model, result in found.items()]
+    sentences = [
+        _CAUSES.constrained(model, sentence(result, top, bodies[top])) for model, result in found.items()
+    ]
     sentences += _CAUSES.items("unexplained", quiet, nothing, noise)
     if not sentences:
         return []

@@ -94,7 +94,7 @@ def sensitivity(ensemble, variables, controls=()):
     Samples that failed are left out. One that collapsed or still falls ranks first: its peak is at least the
     largest of the completed ones. Histories rest on the completed samples.
     Variables are taken as independent; of correlated ones the index holds what they carry of each other. The share of
-    a history weighs each time by the variance there: it says what the envelope's thickness over time comes from.
+    a history weighs each time by the variance there: it states what the envelope's thickness over time comes from.
     """
     counted = counted_samples(ensemble)
     inputs = counted["parameter_value"].sel(parameter=variables).transpose("sample", "parameter").to_numpy()

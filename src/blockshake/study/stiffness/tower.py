@@ -6,7 +6,7 @@ from blockshake.geometry.structure import build_structure
 _BLOCKS = 4
 _PLATE_WIDTH = 1.25  # of the block's longest horizontal edge
 _PLATE_HEIGHT = 0.125  # of the block's
-_DECIMALS = 9  # of a place [m]: as a file says it
+_DECIMALS = 9  # of a place [m]: as in a file
 _FRICTION = 10.0  # a step slips no joint, however light the blocks
 
 
@@ -16,7 +16,7 @@ def tower_of(structure):
     Parameters
     ----------
     structure : Structure
-        Of a shape that is no box the box around it is taken.
+        A shape that is no box the box around it is taken.
 
     Returns
     -------

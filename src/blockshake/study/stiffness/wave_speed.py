@@ -96,7 +96,7 @@ def calibrate_stiffness(structure: StructureSource, parameters: Mapping[str, Any
     Parameters
     ----------
     structure : Structure, str, path or mapping
-        Of whose blocks `tower_of` makes the tower that is tested.
+        Whose blocks `tower_of` makes the tower that is tested.
     parameters : dict of str to value, optional
         Physical parameters by dotted name.
 

@@ -116,7 +116,7 @@ def test_stacks_of_any_sizes_typed_to_the_millimetre_are_never_thrown(make_struc
     allowed = np.array(allowed)
     assert run.status == "completed"
     # a cube may rise a little where a lighter one falls on it, by less than the fall; a fall ends as deep in the
-    # springs as its speed says, v sqrt(m / k A), of columns of 2 m
+    # springs as its speed states, v sqrt(m / k A), of columns of 2 m
     falls = allowed.reshape(-1, 3).max(axis=1).repeat(3)
     impact = np.sqrt(2.0 * G * falls * 2400.0 * 2.0 / K_N)
     assert (moved[..., 2].max(axis=0) < falls + ELASTIC_SINK).all()

@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.geometry.overlap import find_pairs
 from blockshake.geometry.rotations import rotation_matrix_into
-from blockshake.jit import borrowing_kernel, inner_kernel, kernel, separate_kernel
+from blockshake.jit import inner_kernel, kernel, kernel_without_aliasing, kernel_without_allocation
 from blockshake.solvers.ls_dem.contact.joint_areas import joint_areas_into
 from blockshake.solvers.ls_dem.contact.located_nodes import locate_nodes_into
 from blockshake.solvers.ls_dem.contact.packets import (
@@ -73,7 +73,7 @@ def empty_candidates(n_bodies):
     )  # fmt: skip
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def lists_expired(candidates, surfaces, driven, position, orientation, skin):
     """Whether a node outside the lists could touch by now.
 
@@ -238,7 +238,7 @@ def _most_packets(first):
     return most
 
 
-@separate_kernel
+@kernel_without_aliasing
 def _locate_before_into(candidates, surfaces, poses, pair, R, d):
     """Place the nodes of a pair where they were a step before, from where their next motion counts."""
     pairs, first = candidates.pairs, candidates.first
@@ -254,7 +254,7 @@ def _locate_before_into(candidates, surfaces, poses, pair, R, d):
         )  # fmt: skip
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def sleeps(candidates, position, pair):
     """Whether no node of a pair can touch yet with the bodies at ``position``; it is then asleep."""
     reach = candidates.reach[pair]
@@ -272,7 +272,7 @@ def sleeps(candidates, position, pair):
     return False
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def locate_pair_into(candidates, surfaces, poses, pair, R, d):
     """Locate the nodes of both sides of a pair, awake now; the area in touch, mean of what both sides find [m2].
 
@@ -296,7 +296,7 @@ def locate_pair_into(candidates, surfaces, poses, pair, R, d):
     return area
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _renew_areas_into(candidates, surfaces, pair, R, d):
     """New areas of a pair's nodes where one body has come to another place on the other since they were made."""
     a, b = candidates.pairs[pair, 0], candidates.pairs[pair, 1]
@@ -307,7 +307,7 @@ def _renew_areas_into(candidates, surfaces, pair, R, d):
         joint_areas_into(candidates, surfaces, pair, key)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def nearest_node(candidates, pair):
     """Least level-set value of a pair's nodes, as located [m], with the node's row of ``located`` and its lane."""
     least, at, lane_at = np.inf, 0, 0

@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.dynamics.friction import friction_asymmetry, friction_coefficient
 from blockshake.geometry.vectors import cross, difference, matrix_product
-from blockshake.jit import borrowing_kernel, inner_kernel, loop_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation, loop_kernel
 from blockshake.solvers.ls_dem.contact.candidates import locate_pair_into, sleeps
 from blockshake.solvers.ls_dem.contact.contact_law import Law, side_forces_into
 from blockshake.solvers.ls_dem.contact.packets import LANES, N_SUMS, SUM_DAMPED, SUM_HELD, SUM_SLID
@@ -47,7 +47,7 @@ def no_loads(n_bodies, joints):
     )  # fmt: skip
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def clear_loads(bodies, loads):
     """Start a force evaluation: gravity on every free body, nothing else."""
     loads.moment[:] = 0.0
@@ -65,7 +65,7 @@ def forces_into(bodies, candidates, surfaces, interfaces, poses, dt, loads):
     contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
     """Contact forces between all near pairs, added to ``loads``, with force and slip of the joints.
 
@@ -126,7 +126,7 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
         _slip_into(loads.joints, joint, mu, heat, dt)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _share_into(owner, other, side, rotation, offset, d, sums, force, moment, joint, joint_force):
     """Add the summed force of a side to both bodies and to the joint, whose second body owns side 1."""
     sign = 1.0 if side == 1 else -1.0
@@ -143,7 +143,7 @@ def _share_into(owner, other, side, rotation, offset, d, sums, force, moment, jo
         joint_force[joint, i] += sign * f[i]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _lever_into(shift, rotation, force, moment):
     """Moment of the force on a pair's second body about where it is, not about where contact sees it."""
     lever = cross(matrix_product(rotation, shift), force)
@@ -151,7 +151,7 @@ def _lever_into(shift, rotation, force, moment):
         moment[i] -= lever[i]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _slip_into(joints, joint, mu, heat, dt):
     """Slip of a joint in this step: its friction heat over Coulomb's limit, a mean weighted by the force.
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import borrowing_kernel, separate_kernel
+from blockshake.jit import kernel_without_aliasing, kernel_without_allocation
 from blockshake.solvers.ls_dem.contact.packets import (
     AREA,
     BUSY,
@@ -51,7 +51,7 @@ class Law(NamedTuple):
     rate: float
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def normal_force(phi, slope, closing, k_n, gamma_n, least):
     """Magnitude of a node's normal force, Eq. (2) [N].
 
@@ -66,7 +66,7 @@ def normal_force(phi, slope, closing, k_n, gamma_n, least):
     return force if (force > least and phi < 0.0) else 0.0
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def trial_stretch(ox, oy, oz, ux, uy, uz, nx, ny, nz):
     """Stretch of a node's shear spring after the motion of a step, before Coulomb's limit: Eq. (4).
 
@@ -81,7 +81,7 @@ def trial_stretch(ox, oy, oz, ux, uy, uz, nx, ny, nz):
     return tx - along * nx, ty - along * ny, tz - along * nz, dropped, along - dropped
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def kept_stretch(tx, ty, tz, f_n, k_s, law):
     """Share of a trial stretch that Coulomb's limit lets a shear spring keep, Eq. (5), and the stretch squared.
 
@@ -94,7 +94,7 @@ def kept_stretch(tx, ty, tz, f_n, k_s, law):
     return limit / reach if reach > limit else 1.0, squared
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def node_force(phi, slope, nx, ny, nz, ux, uy, uz, ox, oy, oz, closed, area, weight, law):
     """Force of one node, its springs afterwards, and the energy it moved.
 
@@ -107,7 +107,7 @@ def node_force(phi, slope, nx, ny, nz, ux, uy, uz, ox, oy, oz, closed, area, wei
     closed : float
         Change of place along the normal in the step before [m].
     area, weight, law : float, float, Law
-        Of the node [m2]; what its dashpot goes with.
+        For the node [m2]; what its dashpot goes with.
 
     Returns
     -------
@@ -142,7 +142,7 @@ def node_force(phi, slope, nx, ny, nz, ux, uy, uz, ox, oy, oz, closed, area, wei
     return fx, fy, fz, sx, sy, sz, now_closed, held, slid, damped
 
 
-@separate_kernel
+@kernel_without_aliasing
 def side_forces_into(packets, located, first, last, start, law, gamma_s, lanes, sums):
     """Forces of the nodes of one side, summed.
 
@@ -151,7 +151,7 @@ def side_forces_into(packets, located, first, last, start, law, gamma_s, lanes, 
     packets, located, first, last, start
         Those of `locate_nodes_into`: the nodes' springs are updated, their forces overwritten.
     law, gamma_s : Law, float
-        Dashpot beside the shear springs, per unit of a node's damping weight.
+        Dashpot next to the shear springs, per unit of a node's damping weight.
     lanes, sums : float64 arrays, shape (N_SUMS * LANES,) and (N_SUMS,)
         Workspace; overwritten with force and moment about the centroid of the other's shape, on the owner, other's
         frame [N, N m], friction heat and dashpot heat of this step, and elastic energy held [J].
@@ -195,9 +195,9 @@ def side_forces_into(packets, located, first, last, start, law, gamma_s, lanes, 
         sums[quantity] = sum_lanes(lanes, quantity * LANES)
 
 
-@separate_kernel
+@kernel_without_aliasing
 def _add_shear_dashpots_into(packets, packet, located, row, gamma_rate, law):
-    """Dashpots beside the shear springs of one packet's nodes, as long as these do not slide.
+    """Dashpots next to the shear springs of one packet's nodes, as long as these do not slide.
 
     The velocity is the mean of the step, the tangential change of place over the step, whose inverse is in
     ``gamma_rate``: of first order in the step. Spring and dashpot together stay below Coulomb's limit.

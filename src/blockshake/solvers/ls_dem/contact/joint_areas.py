@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.geometry.level_set import hollow_depth
 from blockshake.geometry.vectors import copy_into
-from blockshake.jit import borrowing_kernel, inner_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation
 from blockshake.solvers.ls_dem.contact.packets import AREA, DAMPING_WEIGHT, LANES
 from blockshake.solvers.ls_dem.contact.relative_pose import facing_of
 
@@ -194,7 +194,7 @@ def _flat_areas(surfaces, a, b, facing):
     return 4.0 * p * q, 4.0 * other_p * other_q
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _half_edges(surfaces, shape, axis):
     """Half the edges of a flat across an axis of its shape [m]."""
     half, chamfer = surfaces.half[shape], surfaces.chamfer[shape]

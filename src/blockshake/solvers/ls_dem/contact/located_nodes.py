@@ -4,7 +4,7 @@ import numpy as np
 
 from blockshake.geometry.level_set import box_distance, hollow_box_distance
 from blockshake.geometry.level_set_grid import corner_values, interpolate, locate
-from blockshake.jit import borrowing_kernel, separate_kernel
+from blockshake.jit import kernel_without_aliasing, kernel_without_allocation
 from blockshake.solvers.ls_dem.contact.packets import (
     AREA,
     BUSY,
@@ -24,7 +24,7 @@ from blockshake.solvers.ls_dem.contact.packets import (
 from blockshake.solvers.ls_dem.surfaces import INVERSE_SPACING, lattice_of
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def locate_nodes_into(packets, located, first, last, start, surfaces, shape, R, d, side):
     """Locate the nodes of one side; the area of those that lie inside is returned [m2].
 
@@ -65,7 +65,7 @@ def locate_nodes_into(packets, located, first, last, start, surfaces, shape, R, 
     return _area_inside(located, first - start, last - start)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _area_inside(located, first, last):
     """Area of the nodes that lie inside [m2], added up lane by lane, then as `sum_lanes` does."""
     a, b, c, d, e, f, g, h = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -81,7 +81,7 @@ def _area_inside(located, first, last):
     return ((a + b) + (c + d)) + ((e + f) + (g + h))
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _pose(R, d, side):
     """Rotation, row by row, and shift from the owner's frame to the other's, as twelve numbers."""
     return (
@@ -90,7 +90,7 @@ def _pose(R, d, side):
     )  # fmt: skip
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _follow(packets, packet, located, row, lane, pose):
     """Place of a node in the other's frame [m]; it is kept, with its change since the step before."""
     r00, r01, r02, r10, r11, r12, r20, r21, r22, d0, d1, d2 = pose
@@ -104,7 +104,7 @@ def _follow(packets, packet, located, row, lane, pose):
     return x, y, z
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _find(packets, packet, located, row, lane, phi, nx, ny, nz, slope):
     """Write value, slope, normal and area inside of a node; whether it is inside or its spring is stretched."""
     located[row, PHI + lane] = phi
@@ -114,7 +114,7 @@ def _find(packets, packet, located, row, lane, phi, nx, ny, nz, slope):
     return (phi < 0.0) | (packets[packet, HELD + lane] != 0.0)
 
 
-@separate_kernel
+@kernel_without_aliasing
 def _locate_in_box_into(packets, located, first, last, start, half, chamfer, shape, R, d, side):
     """Places, level-set values and normals by the exact distance."""
     a, b, c, leg = half[shape, 0], half[shape, 1], half[shape, 2], chamfer[shape]
@@ -128,7 +128,7 @@ def _locate_in_box_into(packets, located, first, last, start, half, chamfer, sha
         located[row, BUSY] = busy
 
 
-@separate_kernel
+@kernel_without_aliasing
 def _locate_in_hollow_box_into(
     packets, located, first, last, start, half, chamfer, hollow, shape, R, d, side
 ):
@@ -144,7 +144,7 @@ def _locate_in_hollow_box_into(
         located[row, BUSY] = busy
 
 
-@separate_kernel
+@kernel_without_aliasing
 def _locate_in_planes_into(packets, located, first, last, start, first_plane, planes, shape, R, d, side):
     """Places, level-set values and normals by the planes of a convex shape's faces."""
     pose = _pose(R, d, side)
@@ -169,7 +169,7 @@ def _locate_in_planes_into(packets, located, first, last, start, first_plane, pl
         located[row, BUSY] = busy
 
 
-@separate_kernel
+@kernel_without_aliasing
 def _locate_in_lattice_into(packets, located, first, last, start, lattice, values, shape, R, d, side):
     """Places, level-set values and normals by trilinear interpolation, with the bits of `grid_distance`.
 

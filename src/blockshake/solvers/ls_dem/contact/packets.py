@@ -1,6 +1,6 @@
 """Layout of the near nodes in memory: packets of eight, row by row, so that loops over lanes become vectors."""
 
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 
 # Packets hold LANES nodes of one side of a pair of bodies, quantity by quantity: entry ``[packet, row + lane]``, with
 # the rows below. Written so, a loop over the lanes that touches one or two such arrays becomes vector instructions; a
@@ -41,13 +41,13 @@ CORNERS = FORCE
 FAR_AWAY = 1e6
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def triple(table, row, first, lane):
     """The x, y and z of one node in packets or located nodes."""
     return table[row, first + lane], table[row, first + LANES + lane], table[row, first + 2 * LANES + lane]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def put_triple(table, row, first, lane, x, y, z):
     """Write the x, y and z of one node."""
     table[row, first + lane] = x
@@ -55,7 +55,7 @@ def put_triple(table, row, first, lane, x, y, z):
     table[row, first + 2 * LANES + lane] = z
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def add_triple(table, row, first, lane, x, y, z):
     """Add to the x, y and z of one node."""
     table[row, first + lane] += x
@@ -63,7 +63,7 @@ def add_triple(table, row, first, lane, x, y, z):
     table[row, first + 2 * LANES + lane] += z
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def sum_lanes(lanes, row):
     """Sum of eight entries, in a fixed order."""
     return ((lanes[row] + lanes[row + 1]) + (lanes[row + 2] + lanes[row + 3])) + (

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.geometry.vectors import difference, dot, transposed_product
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 
 _PARALLEL = 0.94  # cosine of 20 degrees: boxes turned further against each other meet at edges
 _RASTER = 1e-3  # steps of the raster, over the narrowest width of the two flats
@@ -29,7 +29,7 @@ class Poses(NamedTuple):
     rotation_before: np.ndarray
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def keep_poses(poses):
     """Make the poses now those of the step before."""
     for body in range(poses.position.shape[0]):
@@ -39,7 +39,7 @@ def keep_poses(poses):
                 poses.rotation_before[body, i, j] = poses.rotation[body, i, j]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def relative_pose_into(position, rotation, offset, pair, shift, side, R, d):
     """Pose of one body of a pair in the frame of the other's shape, whose origin is the shape's centroid.
 
@@ -78,7 +78,7 @@ class Facing(NamedTuple):
     step: float
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def facing_key(surfaces, a, b, R, d):
     """Position on the raster of body ``b`` as ``a`` sees it: four whole numbers, the first -1 where no flats meet.
 
@@ -129,7 +129,7 @@ def facing_key(surfaces, a, b, R, d):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def facing_of(surfaces, a, b, key):
     """The `Facing` of a key that is not -1."""
     code = key[0]
@@ -147,7 +147,7 @@ def facing_of(surfaces, a, b, key):
     )  # fmt: skip
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _raster(surfaces, shape_a, shape_b, axis_a, axis_b):
     """Step of the raster [m], and that of the sine of the turn, which moves the smaller flat's corners as far."""
     half_a, half_b = surfaces.half[shape_a], surfaces.half[shape_b]

@@ -22,7 +22,9 @@ from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series,
 _MOST_ITERATIONS = 20
 _AT_REST = 1e-9  # out-of-balance force over weight; the thump it leaves is as small
 _SEATED = 1e-5  # m; nodes of a hollow joint that are open by so much more than its nearest stay open
-_SOFT = 1e-9  # of the stiffest entry; it lets a body that nothing holds move far, and is told by that
+_SOFT = (
+    1e-9  # of the stiffest entry; weak ground spring; an unsupported body then moves far, which reveals it
+)
 
 
 def approach_equilibrium(assembly, state, near, joints):
@@ -248,7 +250,7 @@ def stable_time_step(pairs, stiffness, relaxation, bodies):
     """Largest stable time step of the joints at the start [s]; infinite where nothing holds a body.
 
     ``pairs`` int64 (n_pairs, 2); ``stiffness`` (n_pairs, 12, 12): of the pairs' springs, as `joint_stiffness` gives
-    them; ``relaxation`` (n_pairs,): of the dashpots beside them [s].
+    them; ``relaxation`` (n_pairs,): of the dashpots with them [s].
 
     Notes
     -----

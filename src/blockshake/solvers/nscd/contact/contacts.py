@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.geometry.overlap import find_pairs
 from blockshake.geometry.vectors import cross, difference, dot, matrix_product, put_into, transposed_product
-from blockshake.jit import borrowing_kernel, inner_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation
 from blockshake.solvers.external_forces import closure_into
 from blockshake.solvers.nscd.contact.detection import detect_pair_into
 
@@ -72,7 +72,7 @@ def first_rows(contacts, count):
     )  # fmt: skip
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def contact_margin(v_start, radius, gravity, dt):
     """Gap up to which points of two bodies are kept as contacts: what no pair can close in a step [m]."""
     fastest = 0.0
@@ -82,7 +82,7 @@ def contact_margin(v_start, radius, gravity, dt):
     return _LEAST_MARGIN + 2.0 * dt * (fastest + dt * np.sqrt(dot(gravity, gravity)))
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def add_contact_into(contacts, count, a, b, placed, rotations, normal, point, gap, compliance):
     """Write a contact of the bodies a and b at a point, (3,) in the world frame [m], into row ``count``.
 
@@ -96,7 +96,7 @@ def add_contact_into(contacts, count, a, b, placed, rotations, normal, point, ga
     put_into(transposed_product(rotations[a], contacts.arm_a[count]), contacts.home[count])
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _detect_into(
     pairs, polyhedra, placed, rotations, margin, shrink, layers, admittance, memory, normal, points, gaps, areas,
     contacts,
@@ -148,7 +148,7 @@ def detect_contacts(
     return first_rows(contacts, count + n_stoppers)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _with_body(W, arm, inverse_mass, inverse_inertia, basis):
     """``W`` and one body's share of ``basis (1/m - arm x I^-1 arm x) basis^T``; the upper entries, row by row."""
     along, first, second = cross(arm, basis[0]), cross(arm, basis[1]), cross(arm, basis[2])
@@ -163,7 +163,7 @@ def _with_body(W, arm, inverse_mass, inverse_inertia, basis):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _tangents_into(basis):
     """Two tangents that complete a right-handed frame with the normal ``basis[0]``."""
     n = basis[0]
@@ -177,7 +177,7 @@ def _tangents_into(basis):
     put_into(cross(n, basis[1]), basis[2])
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def delassus_into(bodies, inverse_inertia, contacts):
     """Fill in the tangents and the Delassus operators, ``W = J M^-1 J^T`` of each contact alone.
 
@@ -207,7 +207,7 @@ def delassus_into(bodies, inverse_inertia, contacts):
         w[W_N2] = c * w_n2 - s * w_n1
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def effective_mass(w):
     """Least mass that a contact with the Delassus operator ``w`` moves along its basis [kg]."""
     return 1.0 / max(w[W_NN], max(w[W_11], w[W_22]))
@@ -240,7 +240,7 @@ def place_stoppers_into(bodies, stoppers, base, step, dt, theta, contacts):
         put_into((-toward[0], -toward[1], -toward[2]), contacts.basis[row, 0])
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def relative_velocity(contacts, contact, v):
     """Velocity of b minus that of a at a contact, along its basis [m/s].
 
@@ -254,7 +254,7 @@ def relative_velocity(contacts, contact, v):
     return matrix_product(contacts.basis[contact], (x, y, z))
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def contact_velocities_into(contacts, v, u):
     """Velocities of all contacts along their bases [m/s], into ``u`` (n_contacts, 3); ``v`` as there."""
     for contact in range(contacts.gap.size):

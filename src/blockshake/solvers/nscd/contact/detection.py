@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.geometry.vectors import cross, difference, dot, put_into
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 from blockshake.solvers.nscd.contact.overlap_polygon import (
     area_and_centroid_into,
     choose_four_into,
@@ -24,7 +24,7 @@ _CORNER = 1.0 / 12.0
 LEAST_AREA = 1e-12  # m2, of a joint that has none
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def detect_pair_into(polyhedra, placed, a, b, margin, shrink, layer, memory, normal, points, gaps, areas):
     """Contact points of bodies ``a`` and ``b``, at most four and the middle of a joint with a layer; their number.
 
@@ -78,7 +78,7 @@ def detect_pair_into(polyhedra, placed, a, b, margin, shrink, layer, memory, nor
     return count
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _face_separation(polyhedra, placed, face, other):
     n = placed.normals[face]
     lowest = np.inf
@@ -87,7 +87,7 @@ def _face_separation(polyhedra, placed, face, other):
     return lowest - placed.offsets[face]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _best_face(polyhedra, placed, a, b, margin, last_face, bias):
     """Face whose normal separates best, and by how much; the last one has the bias, then ``a``."""
     best_face, best = last_face, -np.inf
@@ -112,7 +112,7 @@ def _best_face(polyhedra, placed, a, b, margin, last_face, bias):
     return best_face, best
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _incident_face(polyhedra, placed, face, other):
     """Face of ``other`` that holds its nearest vertex and looks most against the reference face."""
     n = placed.normals[face]
@@ -130,7 +130,7 @@ def _incident_face(polyhedra, placed, face, other):
     return chosen
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _face_points_into(polyhedra, placed, other, face, margin, shrink, layer, points, gaps, areas):
     """Corners of the overlap, and its middle where there is a layer; those within ``margin``.
 
@@ -173,7 +173,7 @@ def _face_points_into(polyhedra, placed, other, face, margin, shrink, layer, poi
     return count
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _best_edge_into(polyhedra, placed, a, b, normal):
     """Largest separation along a cross of edge directions [m]; its unit vector from ``a`` to ``b``."""
     best = -np.inf
@@ -203,7 +203,7 @@ def _best_edge_into(polyhedra, placed, a, b, normal):
     return best
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _support_edge(polyhedra, placed, body, normal, sign):
     """Edge perpendicular to ``normal`` that lies farthest along ``sign`` times it."""
     best, chosen = -np.inf, -1
@@ -215,7 +215,7 @@ def _support_edge(polyhedra, placed, body, normal, sign):
     return chosen
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _edge_point_into(polyhedra, placed, a, b, normal, points):
     """Midpoint of the two support edges' common perpendicular; False where they pass each other."""
     edge_a = polyhedra.edges[_support_edge(polyhedra, placed, a, normal, 1.0)]

@@ -11,7 +11,7 @@ from blockshake.dynamics.friction import (
     friction_coefficient,
 )
 from blockshake.geometry.vectors import dot
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 from blockshake.solvers.nscd.contact.contacts import relative_velocity
 
 
@@ -33,7 +33,7 @@ def ordered_friction(structure, order):
     return OrderedFriction(ordered, np.ascontiguousarray(order))
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def friction_into(friction, joints, rotations, contacts):
     """Fill in the coefficients of the contacts and their bias by direction, but for those of the stoppers.
 
@@ -47,7 +47,7 @@ def friction_into(friction, joints, rotations, contacts):
     Notes
     -----
     A positive asymmetry raises the coefficient for slip of the joint's second body, by the file's order, along
-    the x axis of its first; ``bias`` says so of b against a, whichever of them is lower.
+    the x axis of its first; ``bias`` states it of b against a, whichever of them is lower.
     """
     laws = friction.laws
     a, b = -1, -1
@@ -69,7 +69,7 @@ def friction_into(friction, joints, rotations, contacts):
             contacts.bias[contact, tangent] = dot(contacts.basis[contact, 1 + tangent], toward)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def coefficient_along(contacts, contact, p_1, p_2):
     """Coefficient of a contact whose friction pushes b along (p_1, p_2), so that it slips the other way [1]."""
     mu = contacts.friction[contact]
@@ -78,7 +78,7 @@ def coefficient_along(contacts, contact, p_1, p_2):
     return mu - (bias_1 * p_1 + bias_2 * p_2) / size if size > 0.0 else mu
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def law_shift_into(step, dt, theta, restitution, contacts):
     """Fill in ``shift``, the velocities that the contact law adds to those of the contacts.
 
@@ -114,7 +114,7 @@ def law_shift_into(step, dt, theta, restitution, contacts):
             shift[0] += max(gap, 0.0) / dt
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _deepest_of_pair(contacts, first):
     """The contact with the least gap among those of the pair of bodies that begin at ``first``."""
     deepest, contact = first, first
@@ -129,7 +129,7 @@ def _deepest_of_pair(contacts, first):
     return deepest
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _turn_of_levers(step, contacts, contact):
     """Centripetal acceleration of b's point less that of a's [m/s2]."""
     of_b = _centripetal(step.v_start[contacts.body_b[contact], 3:], contacts.arm_b[contact])
@@ -137,7 +137,7 @@ def _turn_of_levers(step, contacts, contact):
     return of_b[0] - of_a[0], of_b[1] - of_a[1], of_b[2] - of_a[2]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def bodies_meet(contacts, n_contacts, v_start, speed):
     """Whether a contact of bodies presses that closed faster than ``speed`` [m/s] when the step began."""
     for contact in range(n_contacts):
@@ -148,7 +148,7 @@ def bodies_meet(contacts, n_contacts, v_start, speed):
     return False
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _centripetal(spin, arm):
     """``spin x (spin x arm)`` [m/s2]."""
     along, squared = dot(spin, arm), dot(spin, spin)
@@ -159,7 +159,7 @@ def _centripetal(spin, arm):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def law_velocity(contacts, contact, u):
     """Velocity that the law is written in: a contact's ``u`` and its shifts, compliance in the normal [m/s]."""
     shift = contacts.shift[contact]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.geometry.vectors import cross, difference, dot, put_into
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 
 # Points this far outside a side plane count as inside, so that flush faces do not flicker [m].
 _FLUSH = 1e-9
@@ -11,7 +11,7 @@ _FLUSH = 1e-9
 _SAME_POINT = 1e-7
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def clip_face_into(polyhedra, placed, reference, incident):
     """Part of the incident face inside the prism over the reference face; the number of its corners.
 
@@ -55,7 +55,7 @@ def clip_face_into(polyhedra, placed, reference, incident):
     return _without_doubles_into(polygon, count)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _without_doubles_into(polygon, count):
     """Number of the first ``count`` corners without those that repeat the one before, which are taken out."""
     kept = 0
@@ -70,13 +70,13 @@ def _without_doubles_into(polygon, count):
     return kept
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _squared_distance(x, y):
     d = difference(x, y)
     return dot(d, d)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def area_and_centroid_into(polygon, count, center):
     """Area of a convex polygon of so many corners [m2]; its centroid, or else the mean corner, into ``center``."""
     weight = 0.0
@@ -97,7 +97,7 @@ def area_and_centroid_into(polygon, count, center):
     return 0.5 * weight
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def shrink_polygon_into(shrink, polygon, count, center):
     """Scale a polygon by ``1 - shrink`` about its area centroid, in place, which is put into ``center``."""
     area_and_centroid_into(polygon, count, center)
@@ -106,7 +106,7 @@ def shrink_polygon_into(shrink, polygon, count, center):
             polygon[index, axis] = center[axis] + (1.0 - shrink) * (polygon[index, axis] - center[axis])
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def choose_four_into(points, gaps, count, normal, chosen):
     """Indices of at most four points that hold the deepest and keep the extent; their number.
 
@@ -165,6 +165,6 @@ def choose_four_into(points, gaps, count, normal, chosen):
     return kept
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _signed_area(a, b, c, normal):
     return 0.5 * dot(cross(difference(b, a), difference(c, a)), normal)

@@ -7,7 +7,7 @@ import numpy as np
 from blockshake.errors import InputError
 from blockshake.geometry.rotations import rotation_rows
 from blockshake.geometry.vectors import put_into, rows_product
-from blockshake.jit import borrowing_kernel, inner_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation
 
 # Edge directions closer than this are one separating axis: only rounding tells them apart.
 _SAME_DIRECTION = 1e-9
@@ -158,13 +158,13 @@ def empty_placed(polyhedra):
     )  # fmt: skip
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _turn_into(R, vectors, first, last, out):
     for row in range(first, last):
         put_into(rows_product(R, vectors[row]), out[row])
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def place_into(polyhedra, position, orientation, placed):
     """Write the polyhedra at these poses, shapes as in `State`, into ``placed``."""
     for body in range(polyhedra.radius.size):

@@ -3,14 +3,14 @@
 import numpy as np
 
 from blockshake.geometry.vectors import matrix_product, transposed_product
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 from blockshake.solvers.nscd.contact.law import coefficient_along
 
 # A contact takes over the impulse of the nearest one of its pair within this share of the radius.
 _SAME_CONTACT = 0.1
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _before(stopper, a, b, other_stopper, other_a, other_b):
     """Whether a contact comes before another in `Contacts`: pairs first, then stoppers."""
     if stopper != other_stopper:
@@ -18,7 +18,7 @@ def _before(stopper, a, b, other_stopper, other_a, other_b):
     return a < other_a or (a == other_a and b < other_b)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _block_of_pair(contacts, a, b, stopper, start):
     """Rows ``first`` to ``last`` of a pair, or of a stopper, searched upwards from ``start``."""
     first = start
@@ -38,7 +38,7 @@ def _block_of_pair(contacts, a, b, stopper, start):
     return first, last
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def warm_start_into(old, radius, share, contacts):
     """Give each contact the impulse of the nearest one of the same pair at the step before.
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import borrowing_kernel, inner_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation
 
 _FREE = 6  # velocities of a body
 
@@ -97,7 +97,7 @@ def block_system(driven, body_a, body_b):
     )  # fmt: skip
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def find_block(system, row, column):
     """Entry of ``right_of`` and ``below`` that holds the block of a row and a later column."""
     low, high = system.first[row], system.first[row + 1]
@@ -110,7 +110,7 @@ def find_block(system, row, column):
     return low
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _factor_into(A, exchange):
     """Elimination within a block, rows exchanged; False where it is singular.
 
@@ -134,7 +134,7 @@ def _factor_into(A, exchange):
     return True
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _divide_right_into(A, exchange, B):
     """The rows of ``B``, right of the factored block ``A``, once those of ``A`` are eliminated."""
     for k in range(_FREE):
@@ -149,7 +149,7 @@ def _divide_right_into(A, exchange, B):
                 B[k, j] -= factor * B[i, j]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _divide_below_into(A, B):
     """Multipliers, transposed, of the rows of ``B^T`` below the factored block ``A``."""
     for k in range(_FREE):
@@ -161,7 +161,7 @@ def _divide_below_into(A, B):
             B[k, j] /= A[k, k]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _subtract_into(A, B, C):
     """Subtract ``A^T B`` from ``C``."""
     for i in range(_FREE):
@@ -176,7 +176,7 @@ def _subtract_into(A, B, C):
             )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def solve_blocks_into(system):
     """Replace the right side ``x`` by the answer; the blocks are lost. False where a block is singular.
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.geometry.vectors import add_impulse_into, cross, matrix_product, transposed_product
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 from blockshake.solvers.nscd.contact.contacts import (
     W_11,
     W_22,
@@ -19,7 +19,7 @@ _MAX_HALVINGS = 100
 _ROOT = 1e-14  # relative width of the last bracket: rounding, so that the local answer is exact
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def solve_contact(w_n, w_1, w_2, a_1, a_2, q_n, q_1, q_2, mu, guess):
     """Impulse of one frictional contact that leaves the others as they are.
 
@@ -87,7 +87,7 @@ def solve_contact(w_n, w_1, w_2, a_1, a_2, q_n, q_1, q_2, mu, guess):
     return max(p_n, 0.0), p_1, p_2, slip_ratio
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _impulse(w_n, w_1, w_2, a_1, a_2, q_n, q_1, q_2, slip_ratio):
     """Impulse with ``u_n = 0`` and ``u_t = -slip_ratio p_t``."""
     d_1, d_2 = 1.0 / (w_1 + slip_ratio), 1.0 / (w_2 + slip_ratio)
@@ -95,7 +95,7 @@ def _impulse(w_n, w_1, w_2, a_1, a_2, q_n, q_1, q_2, slip_ratio):
     return p_n, -(a_1 * p_n + q_1) * d_1, -(a_2 * p_n + q_2) * d_2
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def contact_residual(p_n, p_1, p_2, u_n, u_1, u_2, mu, rho):
     """Residual of the law at one contact, as an impulse [N s].
 
@@ -115,7 +115,7 @@ def contact_residual(p_n, p_1, p_2, u_n, u_1, u_2, mu, rho):
     return np.sqrt(d_n * d_n + d_1 * d_1 + d_2 * d_2)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _push_into(v, arm, inverse_mass, inverse_inertia, sign, impulse):
     """Velocity of one body after ``sign`` times an impulse [N s] at ``arm`` from its mass centre."""
     spin = matrix_product(inverse_inertia, cross(arm, impulse))
@@ -124,7 +124,7 @@ def _push_into(v, arm, inverse_mass, inverse_inertia, sign, impulse):
         v[3 + axis] += sign * spin[axis]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def apply_impulses_into(bodies, inverse_inertia, contacts, v_free, v):
     """Overwrite ``v`` with ``v_free`` and the effect of all impulses."""
     v[:] = 0.0
@@ -143,7 +143,7 @@ def apply_impulses_into(bodies, inverse_inertia, contacts, v_free, v):
             v[body, 3 + axis] = v_free[body, 3 + axis] + spin[axis]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def relative_residual(contacts, u, floor):
     """Residual of the contact law, relative to the impulses [1].
 
@@ -161,7 +161,7 @@ def relative_residual(contacts, u, floor):
     return np.sqrt(error) / max(np.sqrt(load), floor)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def sweep_into(bodies, inverse_inertia, contacts, upwards, v):
     """Sweep of NLGS: the local problem of every contact in turn is solved, first to last if ``upwards``, else back.
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.geometry.vectors import add_impulse_into, cross, matrix_product, transposed_product
-from blockshake.jit import borrowing_kernel, inner_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation
 from blockshake.solvers.nscd.contact.contacts import effective_mass, relative_velocity
 from blockshake.solvers.nscd.contact.law import coefficient_along, law_velocity
 from blockshake.solvers.nscd.solve.block_elimination import (
@@ -47,7 +47,7 @@ def newton_space(driven, body_a, body_b):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def linear_law_into(contacts, contact, u, stiffness, D, c):
     """Linear law ``p = c - D u`` of one contact, from its state and where that points.
 
@@ -56,7 +56,7 @@ def linear_law_into(contacts, contact, u, stiffness, D, c):
     contacts, contact, u : Contacts, int, three floats
         ``u``: velocity of the contact that belongs to its impulse, along its basis [m/s].
     stiffness : float
-        Of the proximal term, in effective masses of the contact [1]: the error it leaves in the contact
+        For the proximal term, in effective masses of the contact [1]: the error it leaves in the contact
         law is the change of the impulse divided by this.
     D, c : float64 arrays, shape (3, 3) and (3,)
         Overwritten, along the contact's basis [kg, N s].
@@ -104,7 +104,7 @@ def linear_law_into(contacts, contact, u, stiffness, D, c):
     c[2] = mu * d_2 * c[0] - D[2, 1] * shift[1] - D[2, 2] * shift[2]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _columns_into(slope, transposed, basis, arm, T):
     """Impulse [N s] of a contact on its second body, world frame, per velocity of a body at ``arm``: (3, 6).
 
@@ -123,7 +123,7 @@ def _columns_into(slope, transposed, basis, arm, T):
         T[i, 3], T[i, 4], T[i, 5] = cross(arm, T[i])
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _add_block_into(sign, arm, T, block):
     """Add force and moment about the mass centre, at ``arm``, of the columns ``T``."""
     for j in range(6):
@@ -136,7 +136,7 @@ def _add_block_into(sign, arm, T, block):
         block[5, j] += arm[0] * y - arm[1] * x
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _add_contact_into(contacts, contact, slope, entry, system, T):
     """Add the linear law of one contact, closed, to the matrix."""
     basis = contacts.basis[contact]
@@ -155,7 +155,7 @@ def _add_contact_into(contacts, contact, slope, entry, system, T):
     _add_block_into(1.0, first_arm, T, system.diagonal[first])
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _assemble_into(bodies, inertia, contacts, stiffness, v, newton):
     """Linear laws of all contacts, and the system that they give."""
     system = newton.system
@@ -188,7 +188,7 @@ def _assemble_into(bodies, inertia, contacts, stiffness, v, newton):
             _add_contact_into(contacts, contact, D, newton.entry[contact], system, T)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def newton_step_into(bodies, inertia, inverse_inertia, contacts, stiffness, v_free, v, newton):
     """Replace impulses, and velocities with them, by those of one Newton step; False where the system is singular.
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.geometry.vectors import copy_into
-from blockshake.jit import borrowing_kernel, inner_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation
 from blockshake.solvers.nscd.contact.contacts import contact_velocities_into
 from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into, relative_residual, sweep_into
 from blockshake.solvers.nscd.solve.newton import newton_space, newton_step_into
@@ -20,14 +20,14 @@ _TRUSTED = 1e-4
 _LAST_SWEEPS = 200
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _residual(contacts, v, floor, u):
     """`relative_residual` for velocities ``v`` of the bodies; ``u`` (n_contacts, 3) is worked in."""
     contact_velocities_into(contacts, v, u)
     return relative_residual(contacts, u, floor)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _size(impulse):
     """Root of the sum of the squares of all impulses [N s]."""
     squared = 0.0

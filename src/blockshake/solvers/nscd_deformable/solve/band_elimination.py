@@ -1,11 +1,11 @@
 """Linear systems with a band of varying width, eliminated without exchange of rows."""
 
-from blockshake.jit import borrowing_kernel
+from blockshake.jit import kernel_without_allocation
 
 _PANEL = 8  # pivots eliminated at a time; `_eliminate_below_into` names each
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def factor_into(A, last):
     """Replace a matrix ``A`` (n, n) by its two triangular factors; False where a pivot is zero.
 
@@ -36,7 +36,7 @@ def factor_into(A, last):
     return True
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _eliminate_below_into(A, first, end):
     """Take a panel's pivots, from ``first`` on, out of the columns behind them in the rows below them."""
     after = first + _PANEL
@@ -55,7 +55,7 @@ def _eliminate_below_into(A, first, end):
             )  # fmt: skip
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def solve_into(A, last, x):
     """Replace the right side ``x`` by the answer; arguments as in `factor_into`, after it."""
     n = A.shape[0]

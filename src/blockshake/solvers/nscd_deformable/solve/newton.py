@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.geometry.vectors import matrix_product
-from blockshake.jit import borrowing_kernel, inner_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation
 from blockshake.solvers.nscd.solve.newton import linear_law_into
 from blockshake.solvers.nscd_deformable.solve.band_elimination import factor_into, solve_into
 from blockshake.solvers.nscd_deformable.solve.operator import extend_into, velocities_into
@@ -52,7 +52,7 @@ def empty_laws(n_contacts):
     return Laws(np.empty((n_contacts, 3, 3)), np.empty((n_contacts, 3)), np.empty(n_contacts, np.int64))
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _laws_into(contacts, u, stiffness, laws):
     """Linear laws at the velocities ``u`` of the contacts."""
     for contact in range(contacts.gap.size):
@@ -64,7 +64,7 @@ def _laws_into(contacts, u, stiffness, laws):
         laws.state[contact] = state
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _serves(factor, contacts, laws, setting):
     """Whether a factored system still belongs to these contacts and states."""
     n = contacts.gap.size
@@ -83,7 +83,7 @@ def _serves(factor, contacts, laws, setting):
     return True
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _system_into(laws, operator, row, A, last):
     """The system of the closed contacts, whose places in it are ``row``, into the zeros of ``A``."""
     n = row.size
@@ -133,7 +133,7 @@ def _factored(contacts, laws, setting, operator):
     )  # fmt: skip
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _drop_open_into(contacts, laws):
     """Take the impulses of open contacts away; whether there were any."""
     dropped = False
@@ -146,7 +146,7 @@ def _drop_open_into(contacts, laws):
     return dropped
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _count_closed(laws):
     closed = 0
     for contact in range(laws.state.size):
@@ -154,7 +154,7 @@ def _count_closed(laws):
     return closed
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _step_into(contacts, u, laws, matrix, last, x):
     """Impulses of the closed contacts after the step; ``x``, three a contact, is worked in."""
     closed = 0
@@ -185,7 +185,7 @@ def newton_step_into(problem, contacts, stiffness, fresh, operator, motion, laws
     problem, contacts : Problem, Contacts
         ``contacts.impulse`` is changed.
     stiffness : float
-        Of the proximal term, as in `linear_law_into`.
+        For the proximal term, as in `linear_law_into`.
     fresh : bool
         Factor anew even where the kept factorisation belongs to these contacts.
     operator, motion, laws : Operator, ContactMotion, Laws

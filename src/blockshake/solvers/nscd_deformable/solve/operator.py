@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.geometry.vectors import cross, dot, matrix_product, put_into, transposed_product
-from blockshake.jit import borrowing_kernel, inner_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation
 from blockshake.solvers.nscd.contact.contacts import W_11, W_22, W_N1, W_N2, W_NN, relative_velocity
 from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into
 from blockshake.solvers.nscd_deformable.contact_points import anchored
@@ -52,7 +52,7 @@ def empty_motion(n_bodies, n_points, n_contacts):
     )
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def impulses_on_points_into(anchors, rotations, contacts, forces):
     """Share the contacts' impulses out to the lattice's points, body frames."""
     forces[:] = 0.0
@@ -70,7 +70,7 @@ def impulses_on_points_into(anchors, rotations, contacts, forces):
                         force[axis] += weight * inward[axis]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def elastic_velocity(anchors, rotations, contacts, contact, points):
     """Velocity of b's surface minus that of a's by deformation, along the contact's basis [m/s]."""
     R_a, R_b = rotations[contacts.body_a[contact]], rotations[contacts.body_b[contact]]
@@ -79,7 +79,7 @@ def elastic_velocity(anchors, rotations, contacts, contact, points):
     return matrix_product(contacts.basis[contact], (of_b[0] - of_a[0], of_b[1] - of_a[1], of_b[2] - of_a[2]))
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def velocities_into(problem, contacts, motion):
     """Velocities that the contacts' impulses give: the exact operator, without a matrix for all contacts."""
     bodies, elastic, anchors = problem.bodies, problem.elastic, problem.anchors
@@ -108,7 +108,7 @@ def velocities_into(problem, contacts, motion):
     surface_velocities_into(anchors, problem.rotations, contacts, motion.v, motion.points, motion.u)
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def surface_velocities_into(anchors, rotations, contacts, v, points, u):
     """Velocities ``u`` (n_contacts, 3) of the contacts, for those of the bodies, ``v``, and of the lattices' points."""
     for contact in range(contacts.gap.size):
@@ -118,7 +118,7 @@ def surface_velocities_into(anchors, rotations, contacts, v, points, u):
             u[contact, axis] = rigid[axis] + elastic[axis]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _point_rows_into(problem, contacts, contact, side, G):
     """Velocity of the lattice points of a contact's body, along the contact's basis, per impulse: ``G`` (3, 3 n)."""
     anchors, elastic = problem.anchors, problem.elastic
@@ -147,7 +147,7 @@ def _point_rows_into(problem, contacts, contact, side, G):
                         G[i, at + 2] += factor * row[at + 2]
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _levers_into(contacts, contact, side, lever):
     """Moments about the mass centre of unit impulses along a contact's basis: rows of ``lever`` (3, 3) [m]."""
     arm = contacts.arm_b[contact] if side else contacts.arm_a[contact]
@@ -155,7 +155,7 @@ def _levers_into(contacts, contact, side, lever):
         put_into(cross(arm, contacts.basis[contact, i]), lever[i])
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _add_block_into(problem, contacts, contact, side, G, lever, other, other_side, block):
     """Add the effect of contact ``other``'s impulse on contact ``contact``'s velocity through a body of both."""
     sign = 1.0 if side == other_side else -1.0
@@ -178,7 +178,7 @@ def _add_block_into(problem, contacts, contact, side, G, lever, other, other_sid
             block[i, j] += sign * w
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _own_operators_into(problem, contacts, lever, held, W):
     """`own_operators_into` with three arrays to work in."""
     elastic, anchors = problem.elastic, problem.anchors
@@ -218,7 +218,7 @@ def own_operators_into(problem, contacts):
 
 
 class Operator(NamedTuple):
-    """Velocity of contacts per impulse of each other, as far as it has been asked for in a step.
+    """Velocity of contacts per impulse of each other, as far as it has been requested in a step.
 
     ``known`` bool (n_contacts,): contacts in it. ``last`` int64 (n_contacts,): the last contact that each, or one
     before it, shares a body with. ``matrix`` (3 n_contacts, 3 n_contacts): zero where contacts are not coupled [1/kg].
@@ -245,7 +245,7 @@ def empty_operator(problem, contacts):
     return Operator(np.zeros(n, np.bool_), last, np.zeros((3 * n, 3 * n)))
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def _extend_into(problem, contacts, wanted, operator, G_a, G_b, block, lever_a, lever_b):
     """`extend_into` with arrays to work in."""
     driven, n = problem.bodies.driven, contacts.gap.size

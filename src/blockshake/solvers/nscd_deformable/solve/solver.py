@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.geometry.vectors import copy_into
-from blockshake.jit import borrowing_kernel, inner_kernel
+from blockshake.jit import inner_kernel, kernel_without_allocation
 from blockshake.solvers.nscd.contact.contacts import effective_mass
 from blockshake.solvers.nscd.contact.law import coefficient_along, law_velocity
 from blockshake.solvers.nscd.solve.gauss_seidel import relative_residual, solve_contact
@@ -20,7 +20,7 @@ from blockshake.solvers.nscd_deformable.solve.operator import (
 _SLOW = 0.1
 
 
-@borrowing_kernel
+@kernel_without_allocation
 def sweep_into(contacts, W, upwards, u):
     """Solve every contact once in turn, first to last if ``upwards`` and back otherwise (Jean 1999).
 

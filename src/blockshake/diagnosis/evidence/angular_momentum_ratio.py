@@ -22,7 +22,7 @@ _TAILS = 0.05, 0.5, 0.95
 class SpinKept(NamedTuple):
     """Share of the spin that the impacts of a campaign keep."""
 
-    # logarithm of the evidence that less is lost than in any sound model, over that of none; 0 without
+    # logarithm of the evidence that less is lost than in any undamaged model, over that of none; 0 without
     # impacts
     gain: float
     estimate: float  # mean share of the spin kept [1]; NaN without impacts
@@ -31,7 +31,7 @@ class SpinKept(NamedTuple):
 
 
 def restitution_gain(seen_tests):
-    """`SpinKept` of a campaign, by its list of `SeenTest`.
+    """`SpinKept` of a campaign, by its list of `ReconstructedTest`.
 
     Notes
     -----
@@ -57,7 +57,7 @@ def restitution_gain(seen_tests):
     weights = np.exp(logs - logsumexp(logs))
     lower, middle, upper = (float(value) for value in np.interp(_TAILS, np.cumsum(weights), _SHARES))
     nothing_lost = np.where(np.isclose(_SHARES, 1.0), 0.0, -np.inf)
-    unsure = f"; no verdict: sound models differ by as much as that from 1{again}"
+    unsure = f"; no verdict: undamaged models differ by as much as that from 1{again}"
     verdict = again if _gain(nothing_lost, plastic, law) > _TELLING else unsure
     statement = (
         f"{len(changes)} impacts kept {middle:.3f} +- {0.5 * (upper - lower):.3f} of the spin (90 %), "

@@ -33,7 +33,7 @@ _MOTION = (
 
 
 @dataclass(frozen=True)
-class SeenTest:
+class ReconstructedTest:
     """All that is read off a test, measured or simulated."""
 
     name: str
@@ -78,7 +78,7 @@ class SeenTest:
         return bearing_points(self.frames, self.states)
 
 
-def why_unseen(readings, structure):
+def why_not_reconstructed(readings, structure):
     """Reason why a test cannot be seen, or None."""
     if is_short(readings):
         return "the test is too short"
@@ -87,8 +87,9 @@ def why_unseen(readings, structure):
     return None if structure.touching.any() else "no bodies touch"
 
 
-def see_test(name, readings, structure, sensors):
-    """`SeenTest` of readings, an `xarray.Dataset` without sensors' faults and outliers, until a block falls."""
+def reconstruct_test(name, readings, structure, sensors):
+    """`ReconstructedTest` of readings, an `xarray.Dataset` without sensors' faults and outliers, until a block
+    falls."""
     sensors = sensors.not_noiseless()
     readings, until = counted_from_rest(readings, structure, sensors)
     motion = smooth_motion(readings, structure, sensors)
@@ -118,7 +119,9 @@ def see_test(name, readings, structure, sensors):
         joints, **{name: np.nan_to_num(getattr(joints, name)) for name in ("rotation", "roll", "slip_rate")}
     )
     rows = equilibrium_rows(frames, states, motion, required, free, known)
-    return SeenTest(name, structure, readings, motion, still, joints, required, frames, states, forces, rows)
+    return ReconstructedTest(
+        name, structure, readings, motion, still, joints, required, frames, states, forces, rows
+    )
 
 
 def _rests(readings, until, noise):

@@ -14,7 +14,7 @@ _SUNK, _SHARE = 0.15, 0.05  # of the radius; of the readings, which no tracking 
 
 
 @dataclass(frozen=True)
-class PosedTest:
+class TrackedTest:
     """One test of a body over a level ground."""
 
     name: str
@@ -32,7 +32,7 @@ class PosedTest:
 
 
 @dataclass(frozen=True, eq=False)
-class PosedCampaign:
+class TrackedCampaign:
     """Tests of one body, and what it is."""
 
     structure: Structure
@@ -48,7 +48,7 @@ class PosedCampaign:
 
     @property
     def name(self):
-        """Of the free body."""
+        """The free body."""
         return self.structure.body_names[self.body]
 
     def heights(self, test):
@@ -56,8 +56,8 @@ class PosedCampaign:
         return test.position[:, 2, None] + test.rotation[:, 2] @ self.vertices.T - self.ground
 
 
-def load_posed(campaign, names):
-    """`PosedCampaign` of the named tests of a campaign without base motion.
+def load_tracked(campaign, names):
+    """`TrackedCampaign` of the named tests of a campaign without base motion.
 
     Raises
     ------
@@ -68,11 +68,11 @@ def load_posed(campaign, names):
     body, ground = free_body(structure)
     solid = structure.solids[structure.file.bodies[body].shape]
     top = structure.position[ground, 2] + structure.solid(ground).vertices[:, 2].max()
-    found = PosedCampaign(structure, [], body, solid.polyhedron.vertices, float(top))
+    found = TrackedCampaign(structure, [], body, solid.polyhedron.vertices, float(top))
     for name in names:
         path = campaign.folder / campaign.tests[name].file
         read = read_poses(path, structure)
-        test = PosedTest(
+        test = TrackedTest(
             name, read["time"].to_numpy(), read["position"].to_numpy(), read["rotation"].to_numpy(),
             bool(read.attrs["planar"]),
         )  # fmt: skip
@@ -94,12 +94,12 @@ def load_posed(campaign, names):
     return found
 
 
-def _rests_at(posed, test):
+def _rests_at(tracked, test):
     """Height of the lowest point at the end of a test [m]; zero where the body moves or may fly there.
 
     A flying body rises or falls by more than ``h`` within ``2 sqrt(2 h / g)``; twice that time is looked at.
     """
-    span = CLEAR * posed.radius
-    time = 4.0 * np.sqrt(2.0 * span / np.linalg.norm(posed.structure.file.gravity))
-    end = posed.heights(test)[test.time > test.time[-1] - time]
+    span = CLEAR * tracked.radius
+    time = 4.0 * np.sqrt(2.0 * span / np.linalg.norm(tracked.structure.file.gravity))
+    end = tracked.heights(test)[test.time > test.time[-1] - time]
     return float(end.min()) if test.time[-1] > time and np.ptp(end, axis=0).max() < span else 0.0

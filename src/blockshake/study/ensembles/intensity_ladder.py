@@ -1,4 +1,4 @@
-"""Rungs of a ladder of intensities, as a configuration names them."""
+"""Levels of a ladder of intensities, as a configuration names them."""
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -8,7 +8,7 @@ from blockshake.validation import Positive, Strict
 _MOST = 1000  # scales of a ladder
 
 
-class Rungs(Strict):
+class IntensityLevels(Strict):
     """Scales of a motion from the first to the highest, evenly; Zhou et al. (2023): 50 %, + 25 %."""
 
     first: Positive = Field(0.5, description="scale of the first test [1]")

@@ -10,15 +10,15 @@ NOT_JUDGED = "no test could be judged"
 _TESTS_TO_ESTABLISH = 3
 
 
-class Rung(NamedTuple):
-    """Word of a verdict, and what a probable cause lacks to be called established (empty on other rungs)."""
+class Grade(NamedTuple):
+    """Word of a verdict, and what a probable cause lacks to be called established (empty on other levels)."""
 
     word: str
     missing: tuple
 
 
-def rung(kind, decision, beside_sensor, measured):
-    """`Rung` of the ladder on which a verdict stands.
+def grade(kind, decision, with_sensor_fault, measured):
+    """`Grade` of confidence on which a verdict stands.
 
     Parameters
     ----------
@@ -26,23 +26,23 @@ def rung(kind, decision, beside_sensor, measured):
         Decision of the verdict, sensor faults included.
     decision : Decision
         On physical causes.
-    beside_sensor : bool
+    with_sensor_fault : bool
         Whether a sensor fault is among the causes.
     measured : MeasuredGain
     """
     if kind == "none":
-        return Rung(NOTHING if decision.tests else NOT_JUDGED, ())
+        return Grade(NOTHING if decision.tests else NOT_JUDGED, ())
     if kind == "unknown":
-        return Rung(UNKNOWN, ())
+        return Grade(UNKNOWN, ())
     if kind == "ambiguous":
-        return Rung(ONE_OF, ())
+        return Grade(ONE_OF, ())
     missing = []
     if len(decision.parts) > 1:
         missing.append("two causes act together")
-    if decision.causes and beside_sensor:
-        missing.append("a sensor's fault acts beside it")
+    if decision.causes and with_sensor_fault:
+        missing.append("a sensor's fault acts with it")
     if decision.forms:
-        missing.append("a force from outside acts beside it")
+        missing.append("a force from outside acts with it")
     if any(path.beats for path in decision.histories):
         missing.append("sizes that change from test to test explain more")
     moved, tests = len(decision.moved), count_words(len(decision.tests), "test")
@@ -53,7 +53,7 @@ def rung(kind, decision, beside_sensor, measured):
             else f"it was judged by {tests} only"
         )
     missing += _of_gain(measured) if decision.causes else ["the sensors' checks alone found it"]
-    return Rung(PROBABLE if missing else ESTABLISHED, tuple(missing))
+    return Grade(PROBABLE if missing else ESTABLISHED, tuple(missing))
 
 
 def _of_gain(measured):

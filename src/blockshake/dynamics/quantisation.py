@@ -8,7 +8,7 @@ _INTEGER = 1e-4  # of a last digit, by which a printed value may differ from a w
 _DEVIATIONS = 4.0  # 6 in 100 000 of normal sums are larger; made records reach 3.6
 
 
-def may_be_rounding(values, time_step, end_velocity, end_displacement):
+def may_be_quantisation(values, time_step, end_velocity, end_displacement):
     """Whether an acceleration that ends so may be a print of one that ends at rest.
 
     Parameters

@@ -18,7 +18,7 @@ _LEVER = 0.6  # m, root of the sum of squares about the vertical, with which the
 _UPRIGHT = 5e-3  # m and rad, along z and about x and y
 
 
-def with_starting_places(test, structure, path):
+def with_initial_poses(test, structure, path):
     """A test with ``starting_place(block, place)``, where a block stands more than 1 mm or 1 mrad off the structure.
 
     Parameters
@@ -61,7 +61,7 @@ def with_starting_places(test, structure, path):
         return test
     test = test.assign(starting_place=(("block", "place"), places)).assign_coords(block=structure.body_names)
     try:
-        touching = standing(structure, test).touching
+        touching = initial_poses(structure, test).touching
     except InputError as error:
         wrong = f"expected blocks that bear on each other; {error}"
         raise InputError(path, "initial_offset", wrong) from None
@@ -72,7 +72,7 @@ def with_starting_places(test, structure, path):
     return test
 
 
-def standing(structure, test):
+def initial_poses(structure, test):
     """The structure with its blocks where a test, or what was made of it, has them at the start; as it is without."""
     if "starting_place" not in test:
         return structure
@@ -99,8 +99,8 @@ def placed(structure, places):
     return poses
 
 
-def starting_lines(test):
-    """The line that says which blocks of a test stand off the structure file; none of a test that starts there."""
+def initial_pose_lines(test):
+    """The line that states which blocks of a test stand off the structure file; none of a test that starts there."""
     if "starting_place" not in test:
         return []
     places = zip(test["block"].values, test["starting_place"].to_numpy(), strict=True)
