@@ -29,15 +29,15 @@ class FlightRows:
 
     def of_cause(self, cause):
         """Rows of a `FlightCause` at sizes 1: list of float64 array, shape (n_rows, n_sizes)."""
-        return self.columns(lambda arc: cause.paths(arc, self.posed))
+        return self.columns(lambda arc: cause.paths(arc, self.tracked))
 
     def given(self, fit, share):
         """The rows with a cause among the nuisances, whose form may leave a share of the path that it makes."""
         columns = self.of_cause(fit.cause)
         errors = [share**2 * np.outer(column @ fit.sizes, column @ fit.sizes) for column in columns]
-        scales = np.full(len(fit.sizes), fit.cause.scale(self.posed))
+        scales = np.full(len(fit.sizes), fit.cause.scale(self.tracked))
         wide = self.likelihood.given(columns, scales, errors)
-        return FlightRows(self.posed, self.arcs, self.values, self.noise, wide)
+        return FlightRows(self.tracked, self.arcs, self.values, self.noise, wide)
 
     def refitted(self, fit, others):
         """A fit given other fits, all sizes free together; its gain stays."""
@@ -126,7 +126,7 @@ def _variances_given(values, columns, variances, noise):
 def explain(rows, cause):
     """`FlightFit` of a `FlightCause`."""
     columns = rows.of_cause(cause)
-    scales = np.full(columns[0].shape[1], cause.scale(rows.posed))
+    scales = np.full(columns[0].shape[1], cause.scale(rows.tracked))
     fit = rows.likelihood.amplitudes(rows.likelihood.whiten(columns), scales, cause.positive)
     return FlightFit(cause, fit.gain, fit.mean, fit.covariance)
 

@@ -85,7 +85,7 @@ def as_cells(histories, of=""):
 def at_readings(cells, time):
     """Cells of simulated tests, in seconds since their start, at times of a measured one that they span."""
     both = [["time", "cell"]]
-    clocks = {"time": cells["time"].to_numpy(), "asked": time}
+    clocks = {"time": cells["time"].to_numpy(), "instants": time}
     read = xr.apply_ufunc(
         at_times, cells, kwargs=clocks, input_core_dims=both, output_core_dims=both, exclude_dims={"time"}
     )
