@@ -39,7 +39,7 @@ _GAINED = {"two-blocks", "three-blocks", "four-blocks", "configuration-1", "tril
 _FAULTS = {name for name, effect in EFFECTS.items() if effect.acts == "observation"}
 HEAD = """\
 # Drawn by hidden_effects/draw_cases.py --seed {seed}. Every effect of the registry at two sizes and every form from
-# outside in every laboratory, pairs of causes, and clean cases. A case's name states nothing of what is hidden in it;
+# outside in every laboratory, pairs of causes, and clean cases. A case's name says nothing of what is hidden in it;
 # what is drawn follows from its seed alone.{sealed}
 """
 SEALED = """

@@ -60,6 +60,11 @@ def in_words(record):
         for name, words in _SAID.items()
         if (share := record.shares[name]).n and name in record.abroad
     ]
+    idle = record.shares["gain_idle"]
+    if idle.hits:
+        sentences.append(
+            f"In {hits(idle)} cases even the true cause gains nothing: the cause is there and changes no prediction."
+        )
     sentences.append(
         "The [track record](docs/results/hidden-effects.md) holds all figures with their misses."
     )

@@ -18,7 +18,7 @@ from blockshake.measurement.sensors.instruments import Instruments
 from blockshake.store import Unit, described
 from blockshake.study.calibration.readings import _Readings
 from blockshake.study.ensembles.batch import _SampleRun
-from blockshake.study.fragility.climb import _Rung
+from blockshake.study.fragility.climb import _Level
 from blockshake.study.stiffness.wave_speed import _Stiffness
 
 STRUCTURE = load_structure("configuration-1")
@@ -57,11 +57,11 @@ def kinds():
 
 def test_all_kinds_are_looked_at():
     assert {one.__name__ for one in kinds()} == {
-        "_CleanRun", "_Histories", "_Outcome", "_Readings", "_Rung", "_SampleRun", "_Stiffness",
+        "_CleanRun", "_Histories", "_Outcome", "_Readings", "_Level", "_SampleRun", "_Stiffness",
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("kind", [_CleanRun, _Histories, _Outcome, _Readings, _Rung, _SampleRun, _Stiffness])
+@pytest.mark.parametrize("kind", [_CleanRun, _Histories, _Outcome, _Readings, _Level, _SampleRun, _Stiffness])
 def test_another_value_of_any_field_is_another_unit(kind):
     names = [field.name for field in fields(kind)]
     unit = kind(**{name: VALUES[name][0] for name in names})

@@ -150,7 +150,7 @@ def gain_section(found):
                 "that the model with the causes removes."
             ),
             Table(
-                "Gain with its interval of 90 %, tests drawn again.", ("Rival", "Gain"),
+                "Gain with its interval of 90 %, tests drawn again.", ("Alternative", "Gain"),
                 tuple((words, percent_words(one)) for words, one in against.items()), "lr",
             ),
             Table(

@@ -41,7 +41,9 @@ def test_samples_that_still_fall_are_told(content):
 
 def test_samples_that_all_pass_tell_no_fragility(content):
     silent = with_fragility(content, median=np.nan, capacity_lower=1.75)
-    assert "all pass the highest factor that was climbed, 1.75, so that no fragility" in words(silent, CASE)
+    assert "all pass the highest factor that was climbed, 1.75, so that there is no fragility" in words(
+        silent, CASE
+    )
     none = with_fragility(content, median=np.nan, capacity_lower=0.0)
     assert "none passes the lowest factor, 0.5" in words(none, CASE)
 

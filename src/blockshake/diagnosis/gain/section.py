@@ -76,7 +76,7 @@ def _gains(verdict):
         "Gain against each rival with its interval of 90 %. Forces: those that undamaged blocks do not make, or the "
         "motion of the slab that an undamaged table does not make, at the frozen sizes. Responses: simulated rotations "
         "and slips of the joints and the drift of the top, as long as each can be predicted.",
-        ("Rival", *(name for _, name in columns)),
+        ("Alternative", *(name for _, name in columns)),
         tuple(rows),
         "l" + "r" * len(columns),
     )

@@ -167,7 +167,7 @@ def gain_section(found):
             ),
             Table(
                 "Gain with its interval of 90 %, tests drawn again.",
-                ("Rival", "Gain"),
+                ("Alternative", "Gain"),
                 tuple((words, percent_words(one)) for words, one in against.items()),
                 "lr",
             ),

@@ -141,7 +141,7 @@ def load_campaign(folder: AnyPath) -> Campaign:
     >>> import blockshake
     >>> campaign = blockshake.load_campaign("my-tests")
     >>> [name for name, test in campaign.tests.items() if test.role == "sealed"]
-    ['alkion-350', 'basso-tirreno-275']
+    ['alkion-275', 'basso-tirreno-275']
     """
     folder = Path(folder)
     path = folder / "campaign.yaml"

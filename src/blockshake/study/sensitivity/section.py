@@ -54,7 +54,7 @@ def _of_stripe(stripe):
         elif np.isfinite(spread).any():
             quiet.append(model)
     sentences = [
-        _CAUSES.constrained(model, sentence(result, top, bodies[top])) for model, result in found.items()
+        _CAUSES.known_ones(model, sentence(result, top, bodies[top])) for model, result in found.items()
     ]
     sentences += _CAUSES.items("unexplained", quiet, nothing, noise)
     if not sentences:
