@@ -107,7 +107,7 @@ class ScoredRecord(TrackRecord):
     @property
     def counted(self):
         """Number of cases in words, and which part of the list they are."""
-        part = "" if self.part == WHOLE else f", {self.part} of the list, its strata kept"
+        part = "" if self.part == WHOLE else f", {self.part} of each stratum"
         failed = f"; {len(self.failed)} more could not be made or diagnosed" if self.failed else ""
         return f"{len(self.cases)} campaigns{part}{failed}"
 
