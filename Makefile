@@ -10,7 +10,7 @@ PEERS := .venv-peers
 ESTIMATE := logs/paper/estimate.txt
 SNAKEMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --cores $(CORES)
 
-.PHONY: study quick paper examples audit test test-slow test-faults test-faults-few test-cluster test-hidden-few test-hidden bench bench-scale figures-of-docs peers cluster setup lint lock clean
+.PHONY: study quick paper examples audit test test-workflow test-slow test-faults test-faults-few test-cluster test-hidden-few test-hidden bench bench-scale figures-of-docs peers cluster setup lint lock clean
 
 study: setup
 	@$(BIN)/blockshake check config/study.yaml
@@ -40,8 +40,15 @@ examples: setup
 	$(BIN)/python examples/own_wall.py results/examples/own-wall
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python examples/own_campaign.py results/examples/own-campaign
 
+# laws and behaviours; then all that starts Snakemake, processes, a browser or an installation
+PARALLEL = --numprocesses $(CORES) --dist loadfile --no-loadscope-reorder
+OTHERS = not slow and not hidden_effects and not faults and not short_faults and not cluster
+
 test: setup
-	$(BIN)/pytest -m "not slow and not hidden_effects and not faults and not cluster" --numprocesses $(CORES) --dist loadfile --no-loadscope-reorder
+	$(BIN)/pytest -m "$(OTHERS) and not workflow" $(PARALLEL)
+
+test-workflow: setup
+	$(BIN)/pytest -m "$(OTHERS) and workflow" $(PARALLEL)
 
 test-slow: setup
 	$(BIN)/pytest -m slow

@@ -29,6 +29,17 @@ LONG = (
     "test_resume.py", "test_steps.py", "test_plan_campaign.py", "test_clocks.py", "test_flights.py",
     "test_answers.py", "test_sampled_shapes.py", "test_failures.py", "test_measured_flights.py",
 )  # fmt: skip
+# files that start Snakemake, processes of their own, a browser or an installation: `make test-workflow`
+OF_WORKFLOW = (
+    "test_workflow.py",
+    "test_failures.py",
+    "test_comments_of_users.py",
+    "test_pages_that_run.py",
+    "test_wheel.py",
+    "test_caches.py",
+    "test_names.py",
+    "test_page_in_a_browser.py",
+)
 SHAPES = {
     "slab": {"box": [3.0, 3.0, 0.2]},
     "block": {"box": [0.8, 2.4, 1.6], "chamfer": 0.02},
@@ -45,8 +56,12 @@ def pytest_sessionstart(session):
         assert [process.wait() for process in processes] == [0, 0]
 
 
+@pytest.hookimpl(tryfirst=True)  # before tests are chosen by their marks
 def pytest_collection_modifyitems(items):
-    """Let the files of `LONG` come first, in their order."""
+    """Mark the files of `OF_WORKFLOW`, and let the files of `LONG` come first, in their order."""
+    for item in items:
+        if item.path.name in OF_WORKFLOW:
+            item.add_marker(pytest.mark.workflow)
     place = {name: number for number, name in enumerate(LONG)}
     items.sort(key=lambda item: place.get(item.path.name, len(LONG)))
 
