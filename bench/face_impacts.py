@@ -110,7 +110,7 @@ def strike(velocity, arm, gyration, restitution, friction):
     Parameters
     ----------
     velocity : float64 array, shape (3,)
-        For the mass centre along x and z [m/s], and spin, positive from x to z [rad/s]; changed in place.
+        Of the mass centre along x and z [m/s], and spin, positive from x to z [rad/s]; changed in place.
     arm : (float, float)
         From the mass centre to the point [m].
     gyration : float

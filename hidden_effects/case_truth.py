@@ -28,7 +28,7 @@ def true_causes(names, size, structure, tests, seed):
     Parameters
     ----------
     names : sequence of str
-        For the registry or of `OUTSIDE`; none of a clean case.
+        Of the registry or of `OUTSIDE`; none of a clean case.
     size : str
         Key of `SIZES`, of effects of the registry; what the prior does not hold of it is not drawn.
     structure : Structure

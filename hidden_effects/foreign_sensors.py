@@ -60,7 +60,7 @@ def read(test, sensors, seed, number):
     sensors : dict
         `true_sensors`.
     seed, number : int
-        For the case, and of the test: gains are those of the case, noise is that of the test.
+        Of the case, and of the test: gains are those of the case, noise is that of the test.
     """
     gains = np.random.default_rng([seed, _STREAM, 0])
     generator = np.random.default_rng([seed, _STREAM, 1 + number])

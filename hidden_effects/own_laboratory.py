@@ -39,7 +39,7 @@ def tests(structure, plan, causes, true, seed, most_tilt):
     test : xarray.Dataset
         As in a campaign's test file.
     scale : float
-        For the motion: the plan's, or less where a block would tilt farther than ``most_tilt`` [rad].
+        Of the motion: the plan's, or less where a block would tilt farther than ``most_tilt`` [rad].
     facts : dict
         ``status``, ``end_time`` and ``tilt`` of the run.
     """

@@ -91,7 +91,7 @@ def impact_law(came, left, spin, spun, arm, inertia):
     Returns
     -------
     restitution, ratio : float
-        For the normal velocity of the contact; tangential over normal impulse [1]. NaN where the contact did not come
+        Of the normal velocity of the contact; tangential over normal impulse [1]. NaN where the contact did not come
         down, or where the spin does not change as an impulse at the contact would change it.
     """
     approach, impulse = (came + np.cross(spin, arm))[2], left - came

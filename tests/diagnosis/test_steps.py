@@ -1,5 +1,7 @@
 """The simulating steps of a diagnosis, on a campaign of two blocks that a formula simulates."""
 
+from types import SimpleNamespace
+
 import pytest
 import xarray as xr
 from made_up_decision import made_up_cause, made_up_decision, part_of
@@ -7,9 +9,11 @@ from tiny_campaign import write_campaign
 from tiny_diagnosis import SOLVERS, TINY, a_formula, gain_of, simulate_open_tests
 
 from blockshake.diagnosis import steps
-from blockshake.diagnosis.verdict.grade import NOT_JUDGED, grade
+from blockshake.diagnosis.answer.decision import write_decision
+from blockshake.diagnosis.verdict.grade import NOT_JUDGED
+from blockshake.diagnosis.verdict.verdict import load_verdict, write_verdict
 from blockshake.errors import InputError
-from blockshake.files import PACKAGE, write_dataset, write_text
+from blockshake.files import PACKAGE, write_dataset, write_json, write_text
 from blockshake.store import load_made
 
 STRUCTURE = PACKAGE.parents[1] / "hidden_effects" / "structures" / "two-blocks.yaml"
@@ -99,5 +103,10 @@ def test_tests_that_are_too_short_end_in_a_verdict_that_says_so(tmp_path):
     assert decided.decision.decision == "none"
     assert decided.decision.tests == ()
     assert all("too short" in line for line in decided.decision.cannot_see)
-    assert grade("none", decided.decision, False, None).word == NOT_JUDGED
+    files = SimpleNamespace(parity=tmp_path / "parity.json", decision=tmp_path / "decision.json", gain=[])
+    write_json(files.parity, decided.parity.as_json())
+    write_decision(files.decision, decided.decision)
+    verdict = steps.conclude(str(tmp_path / "campaign"), 0, files)
+    write_verdict(tmp_path / "verdict.json", verdict)
+    assert load_verdict(tmp_path / "verdict.json").word == NOT_JUDGED
     assert decided.evidence.sizes["instant"] == decided.evidence.sizes["reading"] == 0

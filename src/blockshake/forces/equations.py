@@ -32,7 +32,7 @@ class AccelerationEquations:
         directions : float64 array, shape (n_times, n_rows, 3)
             Unit vectors d, world frame.
         arm : float64 array, shape (n_times, 3)
-            For the sensor from the mass centre, world frame [m].
+            Of the sensor from the mass centre, world frame [m].
         values : float64 array, shape (n_times, n_rows)
             [m/s2]; a row with a value that is not finite is left out.
         noise : dict of Colour to float64 array, shape (n_times, n_rows)
@@ -58,7 +58,7 @@ class AccelerationEquations:
         Returns
         -------
         accelerations : float64 array, shape (n_times, n_bodies, 6)
-            For the mass centre [m/s2] and of the rotation [rad/s2]; NaN where nothing is read.
+            Of the mass centre [m/s2] and of the rotation [rad/s2]; NaN where nothing is read.
         information : float64 array, shape (n_times, n_bodies, 6, 6)
             Their inverse covariance, without the directions that no sensor reads.
 

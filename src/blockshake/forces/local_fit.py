@@ -20,7 +20,7 @@ def fit_locally(times, readings, at, width, degree=2):
     width : float
         Standard deviation of the kernel [s].
     degree : int
-        For the polynomial: 2, or 0 for a mean with positive weights.
+        Of the polynomial: 2, or 0 for a mean with positive weights.
 
     Returns
     -------

@@ -30,7 +30,7 @@ def corrected(test, name, structure, findings):
     test : xarray.Dataset
         As read.
     name : str
-        For the test: findings of other tests do not touch it.
+        Of the test: findings of other tests do not touch it.
     structure : Structure
     findings : sequence of Finding
 

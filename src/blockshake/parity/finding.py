@@ -94,7 +94,7 @@ def chance_of_misfit(before, after, variance):
     before, after : float
         Sums of squared misfits as read, and with the exchange taken back.
     variance : float
-        For an independent value, times the number of values that depend on each other.
+        Of an independent value, times the number of values that depend on each other.
 
     Returns
     -------

@@ -34,7 +34,7 @@ class Size:
             What a faultless sensor may have.
         level : Level
         length : float
-            For the record, of an estimate that is a change over it and a rate in the finding [s].
+            Of the record, of an estimate that is a change over it and a rate in the finding [s].
         """
         p = level.hypotheses * chance_within(self.estimate, self.covariance, tolerance, self.freedom)
         rate, square = self.estimate / length, self.covariance / length**2

@@ -48,9 +48,9 @@ def held_readings(structure, tests, poses, lags):
     tests : dict of str to xarray.Dataset
         By name, as in a campaign.
     poses : dict of str to dict of str to MeasuredPose
-        For bodies, by test.
+        Of bodies, by test.
     lags : dict of str to float
-        For the optical clock behind the recorder's, as accelerometers tell it; 0 where they do not [s].
+        Of the optical clock behind the recorder's, as accelerometers tell it; 0 where they do not [s].
 
     Notes
     -----

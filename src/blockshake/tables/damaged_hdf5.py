@@ -18,7 +18,7 @@ def has_endless_heap(path):
     Parameters
     ----------
     path : path
-        For any file, not empty.
+        Of any file, not empty.
 
     Notes
     -----

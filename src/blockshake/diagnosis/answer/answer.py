@@ -109,9 +109,9 @@ def find_causes(ranked, needed):
     Parameters
     ----------
     ranked : callable
-        For the first `Alternative` of every group found so far: all rivals with them, by falling score.
+        Of the first `Alternative` of every group found so far: all rivals with them, by falling score.
     needed : callable
-        For the name of a cause and these: the Log Bayes factor over none from which the cause is no chance.
+        Of the name of a cause and these: the log Bayes factor over none from which the cause is no chance.
 
     Notes
     -----

@@ -126,9 +126,8 @@ class Decision(Strict):
     cannot_see: tuple[str, ...] = ()  # what the sensors do not show
     histories: tuple[History, ...] = ()  # sizes from test to test
     clean_runs: Count = 0  # simulated campaigns without a cause, by which the thresholds were set
-    thresholds: dict[str, Finite] = Field(
-        default_factory=dict
-    )  # evidence from which a cause is asserted, by name
+    # evidence from which a cause is asserted, by name
+    thresholds: dict[str, Finite] = Field(default_factory=dict)
 
     @property
     def moved(self):

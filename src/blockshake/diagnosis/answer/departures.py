@@ -19,7 +19,7 @@ def departures(seen, evidence, explained):
     seen : list of ReconstructedTest
     evidence : Evidence or None
     explained : list of Explanation
-        For the causes in the answer, a second one given the first.
+        Of the causes in the answer, a second one given the first.
 
     Returns
     -------

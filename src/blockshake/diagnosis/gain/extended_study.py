@@ -57,7 +57,7 @@ def extend_study(verdict: AnyPath, study: AnyPath, output: AnyPath) -> list[str]
     study : str or path
         Configuration of an ordinary study.
     output : str or path
-        For the extended study; the files of its structures, and of the correlation where there is any, lie with it
+        Of the extended study; the files of its structures, and of the correlation where there is any, lie with it
         and begin with its name.
 
     Returns

@@ -23,7 +23,7 @@ def features_of(tests):
     Parameters
     ----------
     tests : list of JudgedTest
-        For ensembles of one kind by one solver, the same members in all.
+        Of ensembles of one kind by one solver, the same members in all.
 
     Returns
     -------

@@ -180,7 +180,7 @@ def cause_rows(cause, opened, sealed, likelihood):
     cause : Cause
     opened, sealed : list of JointRows
     likelihood : Likelihood
-        For all of these, by which the start of a push in a sealed test is found.
+        Of all of these, by which the start of a push in a sealed test is found.
     """
     tests = [*opened, *sealed]
     amplitudes = np.array(cause.amplitudes)

@@ -14,7 +14,7 @@ def misfit(tests):
     Parameters
     ----------
     tests : list of JudgedTest
-        For the nominal ensemble; the same members in all, in one order.
+        Of the nominal ensemble; the same members in all, in one order.
 
     Returns
     -------

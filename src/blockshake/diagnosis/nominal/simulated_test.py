@@ -30,7 +30,7 @@ def simulated_test(planned, draw, extension=None, accelerometers=False):
         The draw states how the table followed its motion.
     draw : Draw
     extension : callable, optional
-        For an `Experiment`: the experiment with what the extended model has against the nominal one.
+        Of an `Experiment`: the experiment with what the extended model has against the nominal one.
     accelerometers : bool
         Whether they are read too.
 

@@ -42,7 +42,7 @@ def simulate_outcomes(campaign, batch, solver, draws, store):
     Parameters
     ----------
     campaign : Campaign
-        For outcomes, which are not read.
+        Of outcomes, which are not read.
     batch : int
         Number of the batch of `BATCH` tests, in the campaign's order.
     solver : str

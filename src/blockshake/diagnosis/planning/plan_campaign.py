@@ -48,7 +48,7 @@ def plan_campaign(
     sensors : str or path, optional
         File of sensors and their noise; by default those of the structure, or usual ones where it has none.
     duration : float, optional
-        For every test; by default its motion's [s].
+        Of every test; by default its motion's [s].
 
     Returns
     -------

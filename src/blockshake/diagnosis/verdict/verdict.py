@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field, JsonValue, model_validator
 
 from blockshake.diagnosis.answer.decision import Cause, Estimate, History, Measurement
-from blockshake.diagnosis.verdict.grade import ESTABLISHED, NOTHING, ONE_OF, PROBABLE, UNKNOWN
+from blockshake.diagnosis.verdict.grade import ESTABLISHED, NOT_JUDGED, NOTHING, ONE_OF, PROBABLE, UNKNOWN
 from blockshake.files import load_json, write_json
 from blockshake.statistics.resampling import limits_of
 from blockshake.tables.shown import Shown
@@ -111,15 +111,14 @@ class Verdict(Shown, Strict):
     odds: dict[str, Finite] = Field(default_factory=dict)
     places: dict[str, tuple[str, ...]] = Field(default_factory=dict)
     limits: dict[str, dict[str, Finite]] = Field(default_factory=dict)
-    word: Literal[ESTABLISHED, PROBABLE, ONE_OF, UNKNOWN, NOTHING]  # type: ignore[valid-type]
+    word: Literal[ESTABLISHED, PROBABLE, ONE_OF, UNKNOWN, NOTHING, NOT_JUDGED]  # type: ignore[valid-type]
     missing: tuple[str, ...] = ()
     row_gain: Gain | None = None
     next_tests: tuple[Measurement, ...] = ()
     extension: tuple[Cause, ...] = Field(
         (),
         description="the most probable cause of every part, by which a study is extended; empty where they gain "
-        "nothing on "
-        "the tests to select by",
+        "nothing on the tests to select by",
     )
     histories: tuple[History, ...] = Field((), description="sizes from test to test")
     structure: str = Field("", description="digest of what was tested, by its content")

@@ -136,7 +136,7 @@ def force_at(seen, body, force, height=0.0, arm=None):
     height : float
         Its point above the mass centre along the body's z axis [m].
     arm : float64 array, shape (n_times, 3), optional
-        For its point from the mass centre in place of that, world frame [m].
+        Of its point from the mass centre in place of that, world frame [m].
     """
     arm = height * seen.motion.rotation[:, body, :, 2] if arm is None else arm
     force = np.broadcast_to(force, arm.shape)

@@ -136,7 +136,7 @@ def simulation_start(time):
     Parameters
     ----------
     time : float64 array, shape (n_times,)
-        For the markers, from the start of the command on [s].
+        Of the markers, from the start of the command on [s].
 
     Returns
     -------

@@ -54,7 +54,7 @@ def accelerometer_noise(readings):
     Parameters
     ----------
     readings : float64 array, shape (n_times, n_channels)
-        For the quiet start [m/s2]; gaps are NaN.
+        Of the quiet start [m/s2]; gaps are NaN.
 
     Returns
     -------

@@ -101,7 +101,7 @@ def observe(run, structure, instruments, seed):
         The run.
     instruments : Instruments
     seed : int
-        For noise, offsets and dropouts: each has a stream of its own, so that one fault more leaves the
+        Of noise, offsets and dropouts: each has a stream of its own, so that one fault more leaves the
         others' numbers as they are.
 
     Returns

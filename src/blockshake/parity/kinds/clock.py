@@ -39,7 +39,7 @@ def clock_lags(pairs_by_test):
     Returns
     -------
     lags : dict of str to Size
-        For each test [s]; a test that does not show it is missing.
+        Of each test [s]; a test that does not show it is missing.
     common : Size or None
         Lag at the middle of a record and skew, of all tests together [s, 1].
     """

@@ -147,13 +147,13 @@ def solve_step(
     model, response : DeformableScene, ElasticResponse
         The response is that over this step.
     theta, restitution : float
-        For the rigid motion; Newton's.
+        Of the rigid motion; Newton's.
     margin : float
         Points with a larger gap are left out [m].
     joints, memory : Joints, int64 array, shape (n_bodies, n_bodies)
         The memory holds the reference faces of the pairs.
     contacts_before, share : Contacts, float
-        For the step before; length of this step over that of the one before [1].
+        Of the step before; length of this step over that of the one before [1].
     floor, tolerance : float
         Impulse below which impulses count as that [N s]; relative residual that ends the search [1].
     deformation, rate : Deformation, float64 array, shape (n_shapes,)

@@ -18,7 +18,7 @@ def two_level_mean(costly, cheap, many):
     Parameters
     ----------
     costly, cheap : float64 arrays, shape (n,)
-        For both models for the same samples, at least 6.
+        Of both models for the same samples, at least 6.
     many : float64 array, shape (N,)
         The cheap model for these samples and others.
 

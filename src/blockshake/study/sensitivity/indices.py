@@ -230,9 +230,9 @@ def shapley_effects(function, correlation, generator):
     Parameters
     ----------
     function : callable
-        For scores (n, n_inputs): values (n_functions, n).
+        Of scores (n, n_inputs): values (n_functions, n).
     correlation : float64 array, shape (n_inputs, n_inputs)
-        For the inputs, which have unit variance.
+        Of the inputs, which have unit variance.
     generator : numpy.random.Generator
 
     Returns

@@ -107,7 +107,7 @@ def node_force(phi, slope, nx, ny, nz, ux, uy, uz, ox, oy, oz, closed, area, wei
     closed : float
         Change of place along the normal in the step before [m].
     area, weight, law : float, float, Law
-        For the node [m2]; what its dashpot goes with.
+        Of the node [m2]; what its dashpot goes with.
 
     Returns
     -------

@@ -56,7 +56,7 @@ def linear_law_into(contacts, contact, u, stiffness, D, c):
     contacts, contact, u : Contacts, int, three floats
         ``u``: velocity of the contact that belongs to its impulse, along its basis [m/s].
     stiffness : float
-        For the proximal term, in effective masses of the contact [1]: the error it leaves in the contact
+        Of the proximal term, in effective masses of the contact [1]: the error it leaves in the contact
         law is the change of the impulse divided by this.
     D, c : float64 arrays, shape (3, 3) and (3,)
         Overwritten, along the contact's basis [kg, N s].
