@@ -8,6 +8,7 @@ from blockshake.diagnosis.answer.decision import Cause, Estimate, Measurement, P
 from blockshake.diagnosis.gain.section import effect_section
 from blockshake.diagnosis.report.answer_section import next_tests_table, percent_words
 from blockshake.diagnosis.report.statement import not_distinguished, statement, until_then
+from blockshake.diagnosis.verdict.grade import NOT_JUDGED
 from blockshake.diagnosis.verdict.verdict import Contrast
 from blockshake.diagnosis.wording import (
     NO_ERROR,
@@ -75,6 +76,8 @@ def test_until_then_is_the_largest_upper_limit_of_the_drift_of_all_sealed_tests(
     assert f"({worst})" in said
     assert "no factor is known" in until_then(replace(one, gain=None))
     assert "nominal model as it is" in until_then(found["none"])
+    unjudged = replace(found["none"], verdict=found["none"].verdict.model_copy(update={"word": NOT_JUDGED}))
+    assert "no test could be judged" in until_then(unjudged)
     idle = replace(one, verdict=one.verdict.model_copy(update={"extension": ()}))
     assert "gains nothing on the tests to select by" in until_then(idle)
     assert effect_section(one) is not None

@@ -56,6 +56,7 @@ def until_then(diagnosed):
                 factors[str(test)] = max(1.0, float(upper) / without)
     worst = max(factors, key=factors.get, default=None)
     return _STATED.until_then(
+        judged=verdict.word != NOT_JUDGED,
         nothing=verdict.word == NOTHING,
         sensors=not diagnosed.decision.parts and bool(sensor_faults(diagnosed)),
         factor=factors.get(worst),
