@@ -10,7 +10,9 @@ import pytest
 from blockshake.files import PACKAGE
 
 ROOT = PACKAGE.parents[1]
-PAGES = sorted([ROOT / "README.md", *ROOT.glob("docs/**/*.md"), *ROOT.glob("*/README.md")])
+PAGES = sorted(
+    [ROOT / "README.md", *ROOT.glob("docs/**/*.md"), *ROOT.glob("*/README.md"), *ROOT.glob("src/*/README.md")]
+)
 TEXTS = (".py", ".smk", ".md", ".yaml", ".yml", ".toml", ".j2", ".typ", ".json", ".lock", "")
 FOLDERS = ("src", "tests", "docs", "bench", "hidden_effects", "workflow", "config", "data", "profiles", ".ci")
 WIDTH = 100
