@@ -57,6 +57,9 @@ class ImportMap(Strict):
         None, description="m/s2, cm/s2 or g; needed where there are channels"
     )
     rotation_unit: Literal["rad", "mrad", "deg"] = Field("rad", description="of angles of filmed bodies")
+    quaternion: Literal["body-to-world", "world-to-body"] = Field(
+        "body-to-world", description="what quaternions of filmed bodies turn"
+    )
     columns: dict[str, ReadingEntry] = Field(
         min_length=1,
         description="by MARKER.x and the like, accelerometer channel or displacement transducer: a column's name, or "

@@ -22,7 +22,7 @@ FARTHEST = 20.0  # m; no table moves so far, a file in millimetres does
 _RATES = (20.0, 1e4)
 _START = 0.1  # s
 # readings, whose median is the start; shaking with 10 m/s2 from the first has moved by 0.5 mm in 10 ms
-_FIRST = 5
+FIRST_READINGS = 5
 _START_LIMIT = 0.01  # m; far beyond noise, far less than a marker's distance from the origin
 _START_NOISE = 5.0  # times the channel's own noise
 _OVERLAP = 0.5  # of the shorter record, that both clocks must share
@@ -36,7 +36,8 @@ _NAMES = {
 _PLACE = 0.1  # m, of a marker off the structure's
 # A block more than some 1 m off hangs over the edge of a slab 3 m wide; one twice as high as thick falls when it is
 # tilted by atan(1/2) = 0.46 rad. Degrees lie beyond in all but small cases.
-_LIMITS = {"initial_offset": (1.0, "m"), "initial_rotation": (0.5, "rad")}
+FARTHEST_TURN = 0.5  # rad
+_LIMITS = {"initial_offset": (1.0, "m"), "initial_rotation": (FARTHEST_TURN, "rad")}
 
 
 def read_test(path, structure):
@@ -194,7 +195,7 @@ def _check_start(test, path):
             channel = column[(time <= time[0] + _START) & np.isfinite(column)]
             if len(channel) < 2:
                 continue
-            start = float(np.median(channel[:_FIRST]))
+            start = float(np.median(channel[:FIRST_READINGS]))
             noise = np.sqrt(np.mean(np.diff(channel) ** 2) / 2.0)  # large where the unit is another
             if abs(start) > max(_START_LIMIT, _START_NOISE * noise):
                 wrong = f"expected displacements since the first reading; it starts at {start:.3g} m"

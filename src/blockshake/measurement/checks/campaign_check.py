@@ -18,6 +18,7 @@ from blockshake.measurement.campaigns.commanded_motion import (
 from blockshake.measurement.campaigns.faulty_readings import faulty_lines
 from blockshake.measurement.campaigns.initial_poses import initial_pose_lines
 from blockshake.measurement.checks.against_slab import carried_remarks, clock_remarks
+from blockshake.measurement.checks.exchanged import exchange_remarks
 from blockshake.measurement.checks.quiet_noise import (
     accelerometer_noise,
     accelerometer_remarks,
@@ -238,6 +239,7 @@ class _Described:
         self.remarks += carried_remarks(
             self.time, self.readings[:, ~self.on_slab], names, self.slab, self.sensors.marker_noise
         )
+        self.remarks += exchange_remarks(self.test, self.structure, self.sensors, self.target)
         if "recorder_late" in self.test.attrs:
             late = self.test.attrs["recorder_late"]
             words = "late" if late > 0.0 else "early"
