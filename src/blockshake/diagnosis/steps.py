@@ -52,7 +52,8 @@ def decide_shaken(campaign, files, without):
     if not seen.tests:
         return *undecided(load_structure(campaign.structure), without, unseen), seen.parity
     runs = [run for path in files.clean for run in load_json(path)] if files else []
-    return *decide(seen.tests, without, unseen, thresholds_of(runs)), seen.parity
+    select = [test.name for test in campaign.open.values() if test.role == "select"]
+    return *decide(seen.tests, without, unseen, thresholds_of(runs), select), seen.parity
 
 
 def simulate_nominal(folder, effort, number, solver, store):

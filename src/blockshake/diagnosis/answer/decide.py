@@ -16,6 +16,7 @@ from blockshake.diagnosis.answer.answer import (
 from blockshake.diagnosis.answer.decision import Cause, Decision, Part
 from blockshake.diagnosis.answer.departures import departures, departures_of_no_test, largest, slab_departures
 from blockshake.diagnosis.answer.explain import EVERY, gather_evidence
+from blockshake.diagnosis.answer.held_out import held_out_rows, held_out_slab
 from blockshake.diagnosis.answer.history import histories, of_last_test
 from blockshake.diagnosis.answer.limits import cannot_see, excluded_above, limits_of
 from blockshake.diagnosis.answer.next_test import next_tests
@@ -44,7 +45,7 @@ class Decided(NamedTuple):
     evidence: xr.Dataset
 
 
-def decide(seen, without=(), unseen=(), thresholds=_BY_ODDS):
+def decide(seen, without=(), unseen=(), thresholds=_BY_ODDS, select=()):
     """`Decided`: what the tests support.
 
     Parameters
@@ -57,6 +58,8 @@ def decide(seen, without=(), unseen=(), thresholds=_BY_ODDS):
         Lines on tests of which nothing was read.
     thresholds : Thresholds
         Evidence that every cause needs.
+    select : sequence of str
+        Names of the tests to select by, on which the chosen causes are tested.
     """
     joints = {} if JOINT_COMPLIANCE.name in without else closed_joints(seen)
     closed = {name: joint.gains for name, joint in joints.items()}
@@ -66,8 +69,8 @@ def decide(seen, without=(), unseen=(), thresholds=_BY_ODDS):
     stages, groups = _in_joints(seen, gather_evidence(seen, without), closed, bool(of_slab), thresholds)
     fitted, explained = _together(stages, groups)
     acting = [
-        _part(group, seen, evidence, {} if number else closed)
-        for number, (group, evidence) in enumerate(zip(groups, fitted, strict=True))
+        _part(group, seen, evidence, {} if number else closed, held_out=held_out_rows(stage, group, select))
+        for number, (group, evidence, stage) in enumerate(zip(groups, fitted, stages, strict=False))
         if group.asserted
     ]
     acting = [part.model_copy(update={"readings": _JOINTS[min(n, 1)]}) for n, part in enumerate(acting)]
@@ -77,8 +80,10 @@ def decide(seen, without=(), unseen=(), thresholds=_BY_ODDS):
     paths = histories(evidence, given_first, first, seen[0])
     if first:
         acting[0] = _with_last_sizes(acting[0], paths)
+    by_name = {test.name: motion for test, motion in zip(seen, slabs, strict=True)}
     for readings, group in of_slab:
-        acting.append(_part(group, seen, None, {}, slab, readings))
+        held_out = held_out_slab(by_name, group, slab, select, without)
+        acting.append(_part(group, seen, None, {}, slab, readings, held_out))
     impacts = restitution_gain(seen)
     if impacts.gain > thresholds.of(RESTITUTION.name) and RESTITUTION.name not in without:
         acting.append(_of_impacts(impacts))
@@ -226,7 +231,7 @@ def probabilities(parts, without):
     return found
 
 
-def _part(group, seen, evidence, closed, slab=None, readings=_JOINTS[0]):
+def _part(group, seen, evidence, closed, slab=None, readings=_JOINTS[0], held_out=None):
     causes = []
     for rival in group.rivals:
         fits, logs = _fits(rival, [rival.place], evidence, closed, slab)
@@ -246,7 +251,10 @@ def _part(group, seen, evidence, closed, slab=None, readings=_JOINTS[0]):
             )
         )
     measurements = next_tests(causes, seen, evidence)
-    return Part(readings=readings, causes=causes, odds=group.odds, gains=group.gains, next_tests=measurements)
+    return Part(
+        readings=readings, causes=causes, odds=group.odds, gains=group.gains, next_tests=measurements,
+        held_out=held_out,
+    )  # fmt: skip
 
 
 def _fits(rival, places, evidence, closed, slab):

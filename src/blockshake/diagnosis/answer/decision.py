@@ -2,6 +2,7 @@
 
 from typing import Literal
 
+import numpy as np
 from pydantic import Field, JsonValue, model_validator
 
 from blockshake.diagnosis.outside.registry import FORMS
@@ -10,6 +11,7 @@ from blockshake.errors import InputError
 from blockshake.files import file_digest, load_json, load_made_json, write_json
 from blockshake.validation import Count, Finite, Fraction, Strict, validated
 
+HELD_OUT_LEVEL = 0.05  # of the test of a cause on the tests to select by
 MEMBERS = 40  # sets of parameters by which a model is extended
 
 
@@ -65,6 +67,28 @@ class Cause(Strict):
         return FORMS[self.name].title if self.outside else title_of(self.name)
 
 
+class HeldOut(Strict):
+    """The most probable cause of a part on the tests to select by alone."""
+
+    tests: tuple[str, ...]
+    gain: Finite  # logarithm of its evidence over none by these tests
+    tried: Count  # causes and places among which it was chosen
+    p: Fraction  # largest chance of as much without any cause
+    expected: Finite | None = (
+        None  # gain that a cause of its size gives; None of one that moves the slab in every test
+    )
+
+    @property
+    def holds(self):
+        """Whether the tests bear the cause out, at the level `HELD_OUT_LEVEL`."""
+        return self.p <= HELD_OUT_LEVEL
+
+    @property
+    def tells(self):
+        """Whether the tests would bear out a cause of this size: what it does in them suffices for the level."""
+        return self.expected is None or self.expected > np.log(self.tried / HELD_OUT_LEVEL)
+
+
 class Part(Strict):
     """One part of the readings that something acts on: the causes that cannot be distinguished, the most probable
     first."""
@@ -77,6 +101,7 @@ class Part(Strict):
     gains: dict[str, Finite]  # logarithm of the evidence over none, by rival
     # that would split the causes, by falling share; empty of a single one
     next_tests: tuple[Measurement, ...] = ()
+    held_out: HeldOut | None = None  # none without tests to select by, or where they show nothing
 
     @property
     def effects(self):

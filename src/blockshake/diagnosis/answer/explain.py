@@ -1,6 +1,6 @@
 """All causes under every noise model of the rows, and the log Bayes factor of each over none."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import logsumexp
@@ -61,6 +61,16 @@ class Tried:
     tests: list  # of JointRows
     points: list  # of Points; at which forces from outside are tried
     variants: dict  # (str, str) to list of list of Columns; by effect and place, by variant and test
+
+    def of_tests(self, numbers, cause):
+        """What is tried of one cause on some of the tests, given by their numbers."""
+        points = [point.of_tests(numbers) for point in self.points]
+        variants = {
+            key: [[variant[n] for n in numbers] for variant in by_variant]
+            for key, by_variant in self.variants.items()
+            if key[0] == cause
+        }
+        return Tried([self.tests[n] for n in numbers], points, variants)
 
 
 def all_tried(tests, without):
@@ -208,6 +218,12 @@ class Evidence:
         gains = np.array(gains)
         return logsumexp(gains + logs.reshape(-1, *[1] * (gains.ndim - 1)), axis=0) - logsumexp(logs)
 
+    def of_tests(self, numbers, cause):
+        """`Evidence` by one cause alone of some tests with rows, given by their numbers."""
+        tried = self.tried.of_tests(numbers, cause)
+        likelihoods = [one.likelihood.of_tests(numbers) for one in self.explained]
+        return Evidence(tried, [explain(likelihood, tried, {cause}) for likelihood in likelihoods])
+
     def plausible(self, key):
         """`Evidence` of the noise models that are plausible given a cause at a place."""
         log_evidence = self._log_evidence(key)
@@ -250,6 +266,12 @@ class Points:
     body: int
     by_test: list  # of PointRows
     tests: list  # of str
+
+    def of_tests(self, numbers):
+        """The point in some of the tests, given by their numbers."""
+        return replace(
+            self, by_test=[self.by_test[n] for n in numbers], tests=[self.tests[n] for n in numbers]
+        )
 
 
 def force_points(tests):

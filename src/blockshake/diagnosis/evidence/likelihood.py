@@ -123,6 +123,12 @@ class Likelihood:
         )
         return gain_of_one(target, gram, scale, False)
 
+    def of_tests(self, numbers):
+        """The likelihood of some tests alone, given by their numbers."""
+        rows = np.concatenate([np.arange(self.ends[n], self.ends[n + 1]) for n in numbers])
+        roots = [self.roots[n] for n in numbers]
+        return Likelihood(roots, self.value[rows], self.nuisances[rows], self.prior)
+
     def given(self, columns, scales, errors):
         """The likelihood with the columns of a cause among the nuisances, and errors of its form.
 

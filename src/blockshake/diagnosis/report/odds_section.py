@@ -1,6 +1,9 @@
 """Second section of a diagnosis: the odds of every cause that was tried, and how they were counted."""
 
+from itertools import chain
+
 from blockshake.diagnosis.answer.answer import COARSENING, coarsened
+from blockshake.diagnosis.answer.decision import HELD_OUT_LEVEL
 from blockshake.diagnosis.answer.thresholds import FREE_SHARE
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.diagnosis.report.statement import RATIO
@@ -16,7 +19,14 @@ def odds_section(diagnosed):
     """Odds and gains of all rivals, one table a part of the readings."""
     parts = diagnosed.decision.parts
     blocks = [Text(_COUNTED.method(COARSENING, FREE_SHARE)), *([] if parts else [Text(_COUNTED.nothing())])]
-    return Section("Odds of all causes", "odds", (*blocks, *map(_table, parts)))
+    return Section("Odds of all causes", "odds", (*blocks, *chain(*map(_of_part, parts))))
+
+
+def _of_part(part):
+    """The table of a part, and how its first cause fares on the tests to select by."""
+    yield _table(part)
+    if part.held_out:
+        yield Text(_COUNTED.held_out(part.causes[0].title, part.held_out, HELD_OUT_LEVEL))
 
 
 def _table(part):

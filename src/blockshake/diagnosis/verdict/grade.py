@@ -2,12 +2,14 @@
 
 from typing import NamedTuple
 
-from blockshake.pages.wording import count_words
+from blockshake.diagnosis.answer.decision import HELD_OUT_LEVEL
+from blockshake.pages.wording import count_words, listed
 
 ESTABLISHED, PROBABLE, ONE_OF = "established", "probable", "one of"
 UNKNOWN, NOTHING = "something acts, cause unknown", "no misfit larger than chance"
 NOT_JUDGED = "no test could be judged"
 _TESTS_TO_ESTABLISH = 3
+_NOT_HELD = "by {} alone, to select by, it is not more than chance at the level of {:g}"
 
 
 class Grade(NamedTuple):
@@ -52,6 +54,10 @@ def grade(kind, decision, with_sensor_fault, measured):
             if decision.silent
             else f"it was judged by {tests} only"
         )
+    tested = (part.held_out for part in decision.parts if part.held_out)
+    missing += [
+        _NOT_HELD.format(listed(one.tests), HELD_OUT_LEVEL) for one in tested if one.tells and not one.holds
+    ]
     missing += _of_gain(measured) if decision.causes else ["the sensors' checks alone found it"]
     return Grade(PROBABLE if missing else ESTABLISHED, tuple(missing))
 
