@@ -31,6 +31,7 @@ class LoadShape(Part):
     )
     places: tuple[str, ...] = Field((), description="blocks on which it may act")
     starts: dict[str, Finite] = Field(default_factory=dict, description="by test, of a form that starts [s]")
+    before: tuple[str, ...] = Field((), description="tests in which it started then or earlier")
 
 
 class Answer(Part):

@@ -160,12 +160,17 @@ class Scored:
 
     @property
     def lateness(self):
-        """How far the starts that are said lie from the true ones, of tests in which the cause acts [s]."""
-        true = dict(zip(self.truth["tests"], self.cause["start"], strict=True))
+        """How far the starts that are said lie from the true ones, of tests in which the cause acts [s].
+
+        A start that is said as ``then or earlier`` is missed by what the true one is later.
+        """
+        true, said = dict(zip(self.truth["tests"], self.cause["start"], strict=True)), self.verdict.outside
         return [
-            abs(at - true[test]) if true[test] is not None else float("inf")
-            for test, at in self.verdict.outside.starts.items()
-        ]
+            float("inf") if true[test] is None
+            else max(true[test] - at, 0.0) if test in said.before
+            else abs(at - true[test])
+            for test, at in said.starts.items()
+        ]  # fmt: skip
 
     @property
     def covered(self):

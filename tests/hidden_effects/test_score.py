@@ -334,6 +334,13 @@ def test_a_description_is_on_time_in_the_test_that_was_struck(test, at, hits):
     assert _share("outside_time", _case(said, blow, tests=("one", "two"), size=None)) == (hits, 1)
 
 
+@pytest.mark.parametrize(("true", "hits"), [(0.5, 1), (2.0, 1), (2.3, 0)])
+def test_a_start_that_is_said_as_then_or_earlier_is_missed_by_a_later_one_alone(true, hits):
+    push = _cause("outside-push", start=[true])
+    said = _verdict("unknown", outside={**ROPE, "form": "push", "starts": {"one": 2.0}, "before": ("one",)})
+    assert _share("outside_time", _case(said, push, tests=("one",), size=None)) == (hits, 1)
+
+
 def test_intervals_of_medians_are_order_statistics():
     """6 values the least and largest hold the median in 1 - 2 / 64 = 0.969; of 5 nothing does in 0.95."""
     gained = [

@@ -101,7 +101,11 @@ def history_words(path):
 def when_words(when):
     """When a form from outside acts; empty of what acts all the time."""
     if "starts" in when:
-        starts = (f"{_seconds(start)} of {test}" for test, start in when["starts"].items())
+        before = when.get("before", ())
+        starts = (
+            f"{_seconds(start)}{' or earlier' if test in before else ''} of {test}"
+            for test, start in when["starts"].items()
+        )
         return f"from {listed(starts)} on"
     if "blows" in when:
         blows = (f"{_seconds(one['time'])} of {test}" for test, one in when["blows"].items())

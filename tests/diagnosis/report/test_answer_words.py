@@ -133,6 +133,10 @@ def test_places_in_words():
         ({"test": "t3", "start": 1.5, "lasts": False}, "from 1.50 s of t3 on"),
         ({"test": "t4", "side": 1, "gap": 0.01}, "in t4 alone"),
         ({"starts": {"t1": -0.02}}, "from 0.00 s of t1 on"),
+        (
+            {"starts": {"t1": 3.0, "t2": 2.0}, "before": ["t1"]},
+            "from 3.00 s or earlier of t1 and 2.00 s of t2 on",
+        ),
         ({"grip": 0.2}, ""),
     ],
 )

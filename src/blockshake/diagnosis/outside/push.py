@@ -25,7 +25,12 @@ def explain_push(likelihood, points, weight):
     evidence, chosen, fitted = max(climbed, key=lambda result: result[0])
     rows = [shapes[:, index] for shapes, index in zip(columns, chosen, strict=True)]
     begins = [float(tried[index]) for tried, index in zip(starts, chosen, strict=True)]
-    values = {"starts": dict(zip(points.tests, begins, strict=True))}
+    # no row tells of a start before a joint first opens, less the rise
+    before = [test for test, index in zip(points.tests, chosen, strict=True) if index == 0]
+    values = {
+        "starts": dict(zip(points.tests, begins, strict=True)),
+        **({"before": before} if before else {}),
+    }
     return single("push", points.place, evidence, rows, scale, fitted, values)
 
 

@@ -106,6 +106,7 @@ def _outside(forms):
         places=first.places,
         size=first.parameters,
         starts=starts,
+        before=tuple(when.get("before", ())),
     )
 
 

@@ -90,6 +90,9 @@ class Outside(Strict):
     places: tuple[str, ...] = Field(description="in words, all that cannot be distinguished from it")
     size: dict[str, Estimate] = Field(description="by name of the size")
     starts: dict[str, Finite] = Field(description="by test, of a form that starts [s]")
+    before: tuple[str, ...] = Field(
+        (), description="tests in which it started then or earlier, before any joint opened"
+    )
 
 
 class Verdict(Shown, Strict):
