@@ -63,7 +63,7 @@ class Tried:
     variants: dict  # (str, str) to list of list of Columns; by effect and place, by variant and test
 
     def of_tests(self, numbers, cause):
-        """What is tried of one cause on some of the tests, given by their numbers."""
+        """`Tried` of one cause on some of the tests, given by their numbers."""
         points = [point.of_tests(numbers) for point in self.points]
         variants = {
             key: [[variant[n] for n in numbers] for variant in by_variant]
