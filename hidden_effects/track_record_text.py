@@ -5,6 +5,7 @@ import textwrap
 from outside_forces import OUTSIDE
 from scored_record import Answers
 
+from blockshake.diagnosis.verdict.track_record_section import PARTS, track_record_lines
 from blockshake.effects.registry import EFFECTS
 
 _WORDS = {True: "met", False: "missed", None: ""}
@@ -50,32 +51,14 @@ def as_markdown(record):
 
 def in_words(record):
     """The record in sentences of a page, in lines of 100 columns."""
+    part = PARTS.get(record.part, record.part)
     sentences = [
-        f"{len(record.cases)} sealed synthetic campaigns{_SHARE.get(record.part, '')} are by the program's own solvers "
-        "(home), by MuJoCo, or by the own solvers with foreign settings and sensors (abroad)."
+        f"The diagnosis was tried on {len(record.cases)} synthetic campaigns with a sealed truth"
+        f"{f', {part} of those planned' if part else ''}.",
+        *track_record_lines(record),
+        "The [track record](docs/results/hidden-effects.md) has every figure and every miss.",
     ]
-    sentences += [
-        f"{words} in {hits(record.laboratories['home'][name])} at home and {hits(record.abroad[name])} abroad "
-        f"(goal {_goal(share)})."
-        for name, words in _SAID.items()
-        if (share := record.shares[name]).n and name in record.abroad
-    ]
-    idle = record.shares["gain_idle"]
-    if idle.hits:
-        sentences.append(
-            f"In {hits(idle)} cases even the true cause gains nothing: the cause is there and changes no prediction."
-        )
-    sentences.append(
-        "The [track record](docs/results/hidden-effects.md) holds all figures with their misses."
-    )
     return "\n".join(textwrap.wrap(" ".join(sentences), 100, break_long_words=False, break_on_hyphens=False))
-
-
-_SHARE = {"1/4": ", a quarter of those planned,", "1/2": ", half of those planned,"}
-_SAID = {
-    "false_alarms": "An effect was called where nothing was hidden",
-    "truth_in_set_seen": "A hidden effect that the tests can show was named or listed",
-}
 
 
 def hits(share):

@@ -2,17 +2,16 @@
 
 import os
 import shutil
-from types import SimpleNamespace
 
 import pytest
 
 from blockshake import run_diagnosis
 from blockshake.cli import main
-from blockshake.diagnosis.answer.decision import Estimate
-from blockshake.diagnosis.verdict.grade import NOTHING, ONE_OF, PROBABLE, UNKNOWN
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE
 from blockshake.own_files import run_workflow
+from blockshake.pages.blocks import Box, Document, Heading, Items, Section, Text, numbered
+from blockshake.pages.writing import write_html
 from blockshake.working_folder import hold, this_command
 
 CAMPAIGN = PACKAGE.parents[1] / "data" / "virtual-campaign" / "configuration-1"
@@ -90,7 +89,7 @@ def test_the_workflow_ends_with_the_diagnosis_and_works_in_its_folder(tmp_path, 
     folder.mkdir()
 
     class Stopped:
-        stdout = None
+        stdout = ()
 
         def __init__(self, command, env, **_):
             given.update(env, folder=command[command.index("--directory") + 1])
@@ -126,26 +125,24 @@ def test_functions_of_the_package_are_no_modules(tmp_path):
         diagnose("nowhere", tmp_path)
 
 
-@pytest.mark.parametrize(
-    ("decision", "causes", "outside", "word", "line"),
-    [
-        ("none", (), None, NOTHING, "no misfit larger than chance"),
-        ("unknown", (), "a rope", UNKNOWN, "something acts, cause unknown: a rope"),
-        ("named", ("weak-joint",), None, PROBABLE, "probable (named): weak-joint"),
-        ("ambiguous", ("a", "b"), None, ONE_OF, "one of (ambiguous): a, b"),
-        ("ambiguous", ("stopper-contact",), "a rope", ONE_OF, "one of (ambiguous): stopper-contact, a rope"),
-        ("combination", ("clock-lag",), "a push", PROBABLE, "probable (combination): clock-lag, a push"),
-    ],
-)
-def test_the_last_line_says_the_verdict(tmp_path, capsys, monkeypatch, decision, causes, outside, word, line):
-    form = outside and SimpleNamespace(title=outside)
-    told = SimpleNamespace(decision=decision, causes=causes, word=word, outside=form)
-    told.parameters = {"weak-joint": {"factor": Estimate(estimate=0.4, lower=0.3, upper=0.5, unit="1")}}
-    told.missing, told.next_test = ("no gain",), "tilt the slab"
-    monkeypatch.setattr(run_diagnosis, "diagnose", lambda *arguments: told)
+def test_the_terminal_has_the_answer_of_the_report(tmp_path, capsys, monkeypatch):
+    def diagnose(campaign, output, *arguments):
+        facts = (("Chance without a cause", "p = 0.03", "upper bound"),)
+        blocks = (
+            Box("Probable: a weak joint.", facts),
+            Text("Until then: use 1.3."),
+            Items(("Next: tilt & see.",)),
+        )
+        later = (Heading("Later", "later"), Text("Not on this screen."))
+        sections = Section("Answer", "answer", blocks), Section("Odds", "odds", later)
+        write_html(output + "/report.html", numbered(Document("title", "subtitle", sections)))
+
+    monkeypatch.setattr(run_diagnosis, "diagnose", diagnose)
     assert main(["diagnose", str(CAMPAIGN), "--output", str(tmp_path)]) == 0
-    *reasons, last = capsys.readouterr().out.splitlines()
-    assert last == f"{line}; {tmp_path}/report.html"
-    assert [
-        one for one in ("40 % (30 to 50)", "no gain", "tilt the slab") if one not in " ".join(reasons)
-    ] == []
+    assert capsys.readouterr().out.splitlines() == [
+        "Probable: a weak joint.",
+        "  Chance without a cause: p = 0.03; upper bound",
+        "Until then: use 1.3.",
+        "  Next: tilt & see.",
+        f"{tmp_path}/report.html",
+    ]

@@ -319,10 +319,13 @@ def _simulate(options):
             options.output_rate,
         )
         with xr.open_dataset(output, decode_times=False) as run:
-            (words, remark), status, reason = ending(run, structure), run.attrs["status"], run.attrs["reason"]
-        print(f"{output}: {words}; took {time.monotonic() - begin:.3g} s", flush=True)
-        if remark:
-            log.info("remark: %s", remark)
+            (answer, *lines), status, reason = (
+                ending(run, structure),
+                run.attrs["status"],
+                run.attrs["reason"],
+            )
+        took = f"computed in {time.monotonic() - begin:.3g} s"
+        print(f"{output}: {answer}; {took}", *lines, sep="\n  ", flush=True)
         if status not in FINISHED:
             print(f"blockshake: {status}: {reason}", file=sys.stderr)
             code = NUMERICAL_FAILURE
@@ -397,33 +400,21 @@ def _study(options):
     from blockshake.own_files.check import check
     from blockshake.own_files.run_study import run_study
 
-    print(f"{options.file}: {check(options.file)}", flush=True)
-    run_study(options.file, options.output, options.cores, options.case, lambda line: print(line, flush=True))
+    _say(f"{options.file}: {check(options.file)}")
+    run_study(options.file, options.output, options.cores, options.case, _say)
+
+
+def _say(line):
+    print(line, flush=True)
 
 
 def _diagnose(options):
+    from blockshake.pages.answer_lines import answer_lines
     from blockshake.run_diagnosis import diagnose
 
-    verdict = diagnose(options.campaign, options.output, options.effort, options.cores)
-    acting = [*verdict.causes, *([verdict.outside.title] if verdict.outside else [])]
-    kind = f" ({verdict.decision})" if verdict.causes else ""
-    named = f"{kind}: {', '.join(acting)}" if acting else ""
-    for line in _reasons(verdict):
-        print(line)
-    print(f"{verdict.word}{named}; {options.output}/report.html")
-
-
-def _reasons(verdict):
-    """Lines of the terminal before the verdict: sizes, what is missing, and the measurement that would decide."""
-    from blockshake.diagnosis.wording import estimate_words, name_of
-
-    for cause, sizes in verdict.parameters.items():
-        words = [f"{name} {estimate_words(name, one)}" for name, one in sizes.items()]
-        yield f"{name_of(cause)}: {', '.join(words)}"
-    if verdict.missing:
-        yield f"not established: {'; '.join(verdict.missing)}"
-    if verdict.next_test:
-        yield f"next: {verdict.next_test}"
+    diagnose(options.campaign, options.output, options.effort, options.cores, _say)
+    report = f"{options.output}/report.html"
+    print(*answer_lines(report), report, sep="\n")
 
 
 def _plan_campaign(options):

@@ -3,11 +3,13 @@
 import json
 import os
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from blockshake.files import HOME, AnyPath, check_output
-from blockshake.own_files.run_workflow import cores_of, run_workflow, workflow_command
+from blockshake.own_files.run_workflow import Listener, cores_of, run_workflow, workflow_command
+from blockshake.pages.wording import count_words
 from blockshake.working_folder import hold
 
 if TYPE_CHECKING:
@@ -21,6 +23,7 @@ def diagnose(
     output: AnyPath,
     effort: str = "standard",
     cores: int | None = None,
+    say: Callable[[str], object] = print,
 ) -> "Verdict":
     """Show what simulations of measured tests get wrong, name the cause, extend the model and measure the gain.
 
@@ -38,6 +41,8 @@ def diagnose(
         ``quick``, ``standard`` or ``deep``.
     cores : int, optional
         All by default.
+    say : callable
+        Gets lines of progress.
 
     Returns
     -------
@@ -66,8 +71,9 @@ def diagnose(
     work = Path.cwd()
     os.close(hold(work))  # the workflow holds it again
     check_output(Path(output) / "verdict.json")
-    run_workflow(diagnosis_command(campaign, effort, cores))
     name, output = result_name(campaign), Path(output)
+    say(f"{name}: diagnosis at effort {effort}, on {count_words(cores, 'core')}, in {work}")
+    run_workflow(diagnosis_command(campaign, effort, cores), Listener(name, say))
     results = work / "results" / "diagnosis" / name
     verdict = load_verdict(results / "verdict.json")
     copied = {file: results / file for file in _ALWAYS_MADE}

@@ -196,7 +196,7 @@ def test_a_diagnosis_is_told_the_very_folder(odd, tmp_path, monkeypatch):
 
     given = []
 
-    def taken(command):
+    def taken(command, listener):
         given.extend(command)
         raise WorkflowError(1)
 

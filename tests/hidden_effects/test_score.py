@@ -504,7 +504,7 @@ def test_an_extension_that_predicts_worse_is_counted(perfect):
     assert [one.found.estimate for one in found["gains"]] == [-0.3] * 3
 
 
-def test_a_true_cause_that_gains_nothing_is_said_and_marked(perfect):
+def test_a_true_cause_that_gains_nothing_is_marked(perfect):
     oracles = [None, {"estimate": 0.2, "lower": 0.0, "upper": 0.4}, GAIN]
     effects = [case for case in perfect if case.kind == "effect"][:3]
     gained = [
@@ -512,9 +512,6 @@ def test_a_true_cause_that_gains_nothing_is_said_and_marked(perfect):
         for case, oracle in zip(effects, oracles, strict=True)
     ]
     record = make_track_record([*gained, *(case for case in perfect if case not in effects)], PLAN)
-    said = " ".join(in_words(record).split())
-    assert "In 2 of " in said
-    assert "cases even the true cause gains nothing: the cause is there and changes no" in said
     rows = [row for row in as_markdown(record).splitlines() if "| not proposed |" in row]
     assert sorted("the cause changes no prediction" in row for row in rows) == [False, True, True]
 

@@ -57,6 +57,10 @@ def workflow(monkeypatch):
         commands.append(command)
         for line in lines:
             hear(line)
+        reports = Path(command[command.index("--directory") + 1], "reports")
+        reports.mkdir(exist_ok=True)
+        for name in ("mine", "mine-strong"):
+            (reports / f"{name}.html").write_text('<div class="box"><p>Both stand.</p></div></section>')
         if lines and lines[-1].startswith("blockshake:"):
             raise WorkflowError(2)
 
@@ -77,6 +81,7 @@ def test_a_study_runs_where_the_user_is_and_says_where_all_is(folder, workflow, 
     )
     said = "".join(said).splitlines()
     assert said[0] == f"mine: 40 runs of ls-dem, nscd-rigid, on 3 cores, in {folder}"
+    assert said[-2] == "Both stand."
     assert said[-1].endswith("; reports/mine.html, reports/mine.pdf, results/mine/")
     ((*_, command),) = (workflow[0],)
     assert command == workflow_command(3, folder, folder / "study.yaml", "all")
@@ -227,6 +232,7 @@ def test_the_last_lines_of_a_workflow_that_fails_are_its_reason(folder, workflow
 def test_a_workflow_that_dies_without_a_word_shows_its_last_lines(folder, monkeypatch, capsys):
     def run(command, hear):
         hear("Killed")
+        hear.explain(1)
         raise WorkflowError(1)
 
     monkeypatch.setattr(of_study, "run_workflow", run)

@@ -3,27 +3,23 @@
 import copy
 import os
 import re
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 
 import yaml
 
-from blockshake.errors import INTERRUPTED, InputError
+from blockshake.errors import InputError
 from blockshake.files import AnyPath, check_output, load_yaml, write_text
-from blockshake.own_files.run_workflow import WorkflowError, cores_of, run_workflow, workflow_command
+from blockshake.own_files.run_workflow import Listener, cores_of, run_workflow, workflow_command
+from blockshake.pages.answer_lines import answer_lines
 from blockshake.pages.wording import count_words, model_label
 from blockshake.study.config import load_config
 from blockshake.study.growth import grow, reached
 from blockshake.working_folder import hold
 
 _SAMPLE = re.compile(r"^(\S+) (\S+) sample (\d+), (kept|simulated): .*?(?:; took ([\d.e+]+) s)?$")
-_STEPS = re.compile(r"^(\d+) of (\d+) steps \((\d+)%\) done$")
 _IDLE = "Nothing to be done"
-_END = re.compile(r"^(Not finished\.|blockshake: )")
-_PERIOD = 5.0  # s, at least, between two lines of progress
-_LAST = 15  # lines of a workflow that ends without a word of its own
 _FILES = ("structure", "motion")
 
 
@@ -94,26 +90,17 @@ def run_study(
     if not any((folder / "results" / "kernels").glob("*")):
         say("models that are new to this machine are compiled first: half a minute to one minute each")
     grown = config.ensemble.until is None
-    try:
-        while not grown:
-            run_workflow(
-                workflow_command(cores, folder, path, f"results/{config.name}/responses.csv"), progress
-            )
-            words, grown = grow(config, results)
-            say(f"{config.name}: {words}")
-            progress = _Progress(reached(config, results), cores, case, folder, say)
-        run_workflow(workflow_command(cores, folder, path, target), progress)
-    except WorkflowError as stopped:
-        if stopped.exit_code == INTERRUPTED:
-            say(
-                f"{config.name}: interrupted; finished samples are kept, and the same command goes on from them"
-            )
-        elif not progress.ending:
-            sys.stderr.write("\n".join([*progress.last, ""]))
-        raise stopped from None
+    while not grown:
+        run_workflow(workflow_command(cores, folder, path, f"results/{config.name}/responses.csv"), progress)
+        words, grown = grow(config, results)
+        say(f"{config.name}: {words}")
+        progress = _Progress(reached(config, results), cores, case, folder, say)
+    run_workflow(workflow_command(cores, folder, path, target), progress)
     shown = [report.with_suffix(".html"), report.with_suffix(".pdf"), folder / "results" / config.name]
     shown = [Path(os.path.relpath(one)) for one in shown]
     done = "nothing was due" if progress.idle else f"done in {_minutes(time.monotonic() - begin)}"
+    for line in answer_lines(shown[0]):
+        say(line)
     say(f"{config.name}: {done}; {shown[0]}, {shown[1]}, {shown[2]}/")
     return shown
 
@@ -141,7 +128,7 @@ def _seen_from(folder, study):
     return study
 
 
-class _Progress:
+class _Progress(Listener):
     """Follows a workflow, and reports how far every case is and how long the rest takes.
 
     The time left is that of the samples that are not done, by the mean cost of the samples of the same case and model,
@@ -150,7 +137,8 @@ class _Progress:
     """
 
     def __init__(self, config, cores, only, folder, say):
-        self.cores, self.say, self.said = cores, say, time.monotonic()
+        super().__init__(config.name, say)
+        self.cores = cores
         cases = [case for case in config.cases if only in (None, case.name)]
         self.durations = {case.name: case.duration for case in cases}
         self.wanted = {
@@ -162,14 +150,11 @@ class _Progress:
             for (case, model), wanted in self.wanted.items()
         }
         self.costs, self.kept = {pair: [] for pair in self.wanted}, 0  # runs that the store had
-        self.total, self.ending, self.idle, self.last = sum(self.wanted.values()), False, False, []
+        self.total, self.idle = sum(self.wanted.values()), False
 
     def __call__(self, line):
-        self.last = [*self.last[1 - _LAST :], line]
-        self.ending = self.ending or bool(_END.match(line))
+        super().__call__(line)
         self.idle = self.idle or line.startswith(_IDLE)
-        if self.ending:
-            sys.stderr.write(f"{line}\n")
         if found := _SAMPLE.match(line):
             pair = found[1], found[2]
             if pair in self.done:
@@ -177,26 +162,21 @@ class _Progress:
                 self.done[pair].add(int(found[3]))
                 self.costs[pair] += [float(found[5])] if found[5] else []
                 self._tell(pair)
-        elif (found := _STEPS.match(line)) and self._is_due() and not self.runs_left():
-            self._say(f"all runs are done; {found[1]} of {found[2]} jobs")
 
-    def _is_due(self):
-        return time.monotonic() - self.said > _PERIOD
+    def count(self, done, total):
+        if not self.runs_left():
+            self.say(f"all runs are done; {done} of {total} jobs")
 
     def runs_left(self):
         return self.total - sum(map(len, self.done.values()))
 
     def _tell(self, pair):
         count, wanted = len(self.done[pair]), self.wanted[pair]
-        if count == wanted or self._is_due():
+        if count == wanted or self.is_due():
             share = f"{self.total - self.runs_left()} of {self.total} runs"
             share += f", {self.kept} of them from the store" if self.kept else ""
             label = model_label(pair[1])
-            self._say(f"{pair[0]}, {label}: {count} of {wanted} samples; {share}; {self._left()}")
-
-    def _say(self, words):
-        self.said = time.monotonic()
-        self.say(words)
+            self.say(f"{pair[0]}, {label}: {count} of {wanted} samples; {share}; {self._left()}")
 
     def _left(self):
         """Time that the samples left will take, in words."""

@@ -2,8 +2,10 @@
 
 import contextlib
 import os
+import re
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 from blockshake.errors import INTERRUPTED, InputError
@@ -11,6 +13,10 @@ from blockshake.files import HOME
 from blockshake.working_folder import this_command
 
 _GRACE = 15.0  # s; for a workflow that is interrupted to end
+_STEPS = re.compile(r"^(\d+) of (\d+) steps \((\d+)%\) done$")
+_END = re.compile(r"^(Not finished\.|blockshake: )")
+_PERIOD = 5.0  # s, at least, between two lines of progress
+_LAST = 15  # lines of a workflow that ends without a word of its own
 
 
 class WorkflowError(RuntimeError):
@@ -43,27 +49,73 @@ def workflow_command(cores, folder, configfile, *arguments):
     ]  # fmt: skip
 
 
-def run_workflow(command, hear=None):
+class Listener:
+    """Gets the lines of a workflow: tells how far it is, and shows its errors.
+
+    Parameters
+    ----------
+    name : str
+        Of the study or the campaign.
+    say : callable
+        Gets lines of progress.
+    """
+
+    def __init__(self, name, say):
+        self.name, self._say, self._said = name, say, time.monotonic()
+        self._ending, self._last = False, []
+
+    def __call__(self, line):
+        self._last = [*self._last[1 - _LAST :], line]
+        self._ending = self._ending or bool(_END.match(line))
+        if self._ending:
+            sys.stderr.write(f"{line}\n")
+        elif (found := _STEPS.match(line)) and self.is_due():
+            self.count(found[1], found[2])
+
+    def count(self, done, total):
+        """Tell how many jobs are done."""
+        self.say(f"{self.name}: {done} of {total} jobs")
+
+    def is_due(self):
+        """Whether the last line of progress is some seconds old."""
+        return time.monotonic() - self._said > _PERIOD
+
+    def say(self, words):
+        """Tell a line of progress."""
+        self._said = time.monotonic()
+        self._say(words)
+
+    def explain(self, exit_code):
+        """Show why a workflow ended badly, where its own lines do not."""
+        if exit_code == INTERRUPTED:
+            self.say(
+                f"{self.name}: interrupted; what is finished is kept, and the same command goes on from it"
+            )
+        elif not self._ending:
+            sys.stderr.write("\n".join([*self._last, ""]))
+
+
+def run_workflow(command, listener):
     """Run a workflow, whose last lines are the outcome, after Ctrl-C too.
 
     Parameters
     ----------
     command : list of str
         From `workflow_command`. The workflow ends with this process.
-    hear : callable, optional
-        Gets every line of its output, which is shown as it is by default.
+    listener : Listener
+        Gets every line of its output.
 
     Raises
     ------
     WorkflowError
     """
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT} if hear else {}
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
     environment = {**os.environ, **this_command(), "PATH": path}
     with subprocess.Popen(command, env=environment, text=True, errors="replace", **pipes) as workflow:
         try:
-            for line in workflow.stdout or ():
-                hear(line.rstrip("\n"))
+            for line in workflow.stdout:
+                listener(line.rstrip("\n"))
             exit_code = workflow.wait()
         except KeyboardInterrupt:  # which the workflow got as well
             with contextlib.suppress(subprocess.TimeoutExpired):
@@ -71,4 +123,5 @@ def run_workflow(command, hear=None):
             workflow.kill()
             exit_code = INTERRUPTED
     if exit_code:
+        listener.explain(exit_code)
         raise WorkflowError(exit_code)

@@ -8,6 +8,7 @@ from blockshake.diagnosis.verdict.verdict import Contrast, Gain
 from blockshake.effects.registry import EFFECTS
 from blockshake.parity.finding import Finding
 from blockshake.parity.parity import Parity
+from blockshake.statistics.intervals import share_interval
 from blockshake.statistics.resampling import resampled_weights
 from blockshake.study.extension.changes import quantities
 
@@ -215,7 +216,8 @@ def track_record():
     """A track record with a goal that is met and one that is missed, and a share without a goal."""
 
     def share(meaning, hits, n, goal, side):
-        bounds = {"lower": 0.0, "upper": 1.0}
+        lower, upper = share_interval(hits, n)
+        bounds = {"lower": lower, "upper": upper}
         return {"meaning": meaning, "hits": hits, "n": n, "goal": goal, "side": side, **bounds}
 
     empty = {"medians": {}, "confusion": [], "cases": []}
@@ -223,8 +225,8 @@ def track_record():
 
     def shares(alarms, covered):
         return {
-            "false-alarm": share("clean campaigns called an effect", alarms, 30, 0.05, "at most"),
-            "covered": share("truth named or in the set", covered, 6, 0.88, "at least"),
+            "false_alarms": share("clean campaigns called an effect", alarms, 30, 0.05, "at most"),
+            "truth_in_set_seen": share("truth named or in the set", covered, 6, 0.88, "at least"),
             "other": share("a share that has no goal", 1, 2, None, "at least"),
         }
 

@@ -45,7 +45,7 @@ def answer_section(diagnosed):
     if verdict.next_test and not verdict.next_tests:
         items.append(_ANSWER.decides(verdict.next_test))
     blocks += [Items(tuple(items))] if items else []
-    blocks += [*next_tests_table(verdict), Text(until_then(diagnosed)), *_figures(diagnosed)]
+    blocks += [Text(until_then(diagnosed)), *next_tests_table(verdict), *_figures(diagnosed)]
     return Section("Answer", "answer", tuple(blocks))
 
 

@@ -1,48 +1,26 @@
-"""Eighth section of a diagnosis: how often the procedure was right where the truth was known."""
+"""Section of a diagnosis: how often the procedure was right where the truth was known, in two lines."""
 
 from blockshake.diagnosis.verdict.track_record import WHOLE, procedure_digest
-from blockshake.pages.blocks import Section, Table, Text
-from blockshake.pages.wording import percent
+from blockshake.pages.blocks import Items, Section, Text
+from blockshake.pages.words import Words
 
-_MET = {True: "met", False: "missed"}
-_LABORATORIES = {"home": "own solvers", "mujoco": "MuJoCo", "unusual": "own solvers, unusual settings"}
+PARTS = {WHOLE: "", "1/4": "a quarter", "1/2": "half", "3/4": "three quarters"}
+_RECORD = Words(__name__)
+_SHOWN = ("false_alarms", "truth_in_set_seen")
 
 
 def track_record_section(diagnosed):
-    """Shares of the campaigns in which an effect was hidden."""
+    """False alarms, and effects that were found."""
     record = diagnosed.track_record
     if record is None:
-        text = (
-            "This procedure has no track record yet: it has not been run on campaigns in which an effect was hidden, "
-            "so that nobody knows how often its answers are right. Read the answer accordingly."
-        )
-        return Section("Track record of the procedure", "track-record", (Text(text, strong=True),))
-    blocks = [
-        Text(
-            f"Campaigns whose truth only the scorer knew, {record.date}, sources {record.commit}; each figure in the "
-            "laboratory in which it is worst. On another structure the figures are an indication. All of them: "
-            "docs/results/hidden-effects.md."
-        )
-    ]
-    if record.part != WHOLE:
-        blocks.append(Text(f"A part of the list was judged: {record.part} of its cases."))
-    if record.procedure != procedure_digest():
-        words = "The program that decides has been changed since: the track record is that of an earlier one."
-        blocks.append(Text(words, strong=True))
-    return Section("Track record of the procedure", "track-record", (*blocks, _shares(record)))
+        blocks = [Text(_RECORD.missing(), strong=True)]
+    else:
+        blocks = [Items(track_record_lines(record)), Text(_RECORD.link(PARTS.get(record.part, record.part)))]
+        if record.procedure != procedure_digest():
+            blocks.append(Text(_RECORD.earlier(), strong=True))
+    return Section("Track record of the procedure", "track-record", tuple(blocks))
 
 
-def _shares(record):
-    rows = []
-    for laboratory, one in record.worst.values():
-        rows.append((
-            one.meaning, _LABORATORIES.get(laboratory, laboratory), f"{percent(one.estimate)} %",
-            f"{one.hits} of {one.n}", f"{percent(one.lower)} to {percent(one.upper)} %",
-            f"{one.side} {percent(one.goal)} %", _MET.get(one.met, ""),
-        ))  # fmt: skip
-    return Table(
-        "Shares of the cases with intervals of 95 %, and the goals set beforehand.",
-        ("Figure", "Laboratory", "Found", "Cases", "Interval", "Goal", ""),
-        tuple(rows),
-        "llrrrrl",
-    )
+def track_record_lines(record):
+    """The sentences of a `TrackRecord` on false alarms and on effects that were found."""
+    return _RECORD.items("shares", *(record.shares.get(name) for name in _SHOWN))
