@@ -65,6 +65,7 @@ class Listener:
         self._ending, self._last = False, []
 
     def __call__(self, line):
+        """Take a line of the workflow's output."""
         self._last = [*self._last[1 - _LAST :], line]
         self._ending = self._ending or bool(_END.match(line))
         if self._ending:
