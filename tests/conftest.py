@@ -37,6 +37,7 @@ OF_WORKFLOW = (
     "test_pages_that_run.py",
     "test_wheel.py",
     "test_caches.py",
+    "test_container.py",
     "test_names.py",
     "test_page_in_a_browser.py",
 )

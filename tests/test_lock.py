@@ -40,9 +40,10 @@ def test_only_pins_are_installed():
 
 def test_the_version_is_one():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    cited = load_yaml(ROOT / "CITATION.cff")["version"]
-    released = re.search(r"^## (\S+), ", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
-    assert project["version"] == cited == released[1] == blockshake.__version__
+    cited = load_yaml(ROOT / "CITATION.cff")
+    released = re.search(r"^## (\S+), (\S+)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
+    assert project["version"] == cited["version"] == released[1] == blockshake.__version__
+    assert str(cited["date-released"]) == released[2]
 
 
 def test_the_environment_of_the_rules_holds_all_that_the_package_needs():

@@ -158,10 +158,16 @@ def _parser():
         "--speed", type=float, default=1.0, metavar="N", help="1 is real time (default), 0.1 ten times slower"
     )
 
-    command = add("export", _export, "a run as CSV tables, for ParaView, or as glTF with motion")
-    _add_run(command)
+    words = "a run as CSV tables, for ParaView, or as glTF with motion; a finished study as a research object"
+    command = add("export", _export, words)
+    _add_run(command, "|STUDY.yaml")
     command.add_argument(
-        "--output", required=True, metavar="FILE", help=".csv, .vtkhdf or .glb: the suffix is the format"
+        "--ro-crate",
+        action="store_true",
+        help="of a study whose results are in the current folder: a Workflow Run RO-Crate, with all files and digests",
+    )
+    command.add_argument(
+        "--output", required=True, metavar="FILE|DIR", help=".csv, .vtkhdf or .glb: the suffix is the format"
     )
 
     command = add("sample", _sample, "a Latin hypercube of Table 2, to a CSV")
@@ -263,8 +269,8 @@ def _add_settings(command):
     )  # fmt: skip
 
 
-def _add_run(command):
-    command.add_argument("file", metavar="RUN.nc", help="from `blockshake simulate`")
+def _add_run(command, more=""):
+    command.add_argument("file", metavar=f"RUN.nc{more}", help="from `blockshake simulate`")
     command.add_argument(
         "--meshes", metavar="DIR", help="of the structure's mesh files (default: the run file's folder)"
     )
@@ -355,6 +361,11 @@ def _animate(options):
 
 
 def _export(options):
+    if options.ro_crate:
+        from blockshake.own_files.study_crate import export_study
+
+        print(export_study(options.file, options.output))
+        return
     from blockshake.views.export import export
 
     _show_progress()

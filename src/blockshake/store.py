@@ -41,7 +41,7 @@ def described(value: Any) -> Any:
     Raises
     ------
     TypeError
-        Of a value that nothing is known of.
+        A value of an unknown kind.
     """
     if isinstance(value, np.generic):
         value = value.item()

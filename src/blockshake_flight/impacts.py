@@ -91,8 +91,8 @@ def impact_law(came, left, spin, spun, arm, inertia):
     Returns
     -------
     restitution, ratio : float
-        Of the normal velocity of the contact; tangential over normal impulse [1]. NaN where the contact did not come
-        down, or where the spin does not change as an impulse at the contact would change it.
+        Restitution of the normal velocity of the contact; tangential over normal impulse [1]. NaN where the contact
+        did not come down, or where the spin does not change as an impulse at the contact would change it.
     """
     approach, impulse = (came + np.cross(spin, arm))[2], left - came
     fits = _cosine(inertia @ (spun - spin), np.cross(arm, impulse)) >= _OF_ONE

@@ -146,7 +146,7 @@ def _start(tracked, arc, model):
     Returns
     -------
     position, velocity, orientation, spin : float64 arrays
-        Of the centroid [m, m/s], unit quaternion, world frame [rad/s].
+        State of the centroid [m, m/s], unit quaternion, spin in the world frame [rad/s].
     """
     offset = np.array(tracked.structure.file.bodies[tracked.body].mass_offset) + _size(model, "eccentricity")
     known = fallen(arc, tracked.structure.file.gravity) + air_drag(tracked) * dragged_by_square(arc)[:, 0]

@@ -23,7 +23,7 @@ def tumbling(tracked, arc):
     Returns
     -------
     scipy.spatial.transform.Rotation, float64 array, shape (3,)
-        Of length n, body to world; angular momentum about the mass centre, world frame [kg m2/s].
+        Rotations at n instants, body to world; angular momentum about the mass centre, world frame [kg m2/s].
 
     Notes
     -----

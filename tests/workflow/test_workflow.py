@@ -1,18 +1,22 @@
 """The workflow as a user meets it: small studies in a copy of the checkout, run by Snakemake itself."""
 
 import html
+import json
 import os
 import re
 import shutil
 import subprocess
 import sys
 import time
+import zipfile
+from pathlib import Path
 
 import pytest
 import yaml
 from checkout import LIMIT, SNAKEMAKE, Checkout
 from made_up_decision import made_up_cause
 
+import blockshake
 from blockshake.cli import main
 from blockshake.diagnosis.verdict.verdict import Misfit, Verdict, write_verdict
 from blockshake.files import PACKAGE, load_yaml
@@ -61,6 +65,19 @@ def test_printed_configuration_plans_the_same_study(finished):
         finished.write_config(before)
 
 
+def test_a_finished_study_is_exported_as_a_research_object(finished, monkeypatch):
+    monkeypatch.chdir(finished.folder)
+    assert main(["export", "config/small.yaml", "--ro-crate", "--output", "crate"]) == 0
+    graph = {
+        one["@id"]: one for one in json.loads(Path("crate/ro-crate-metadata.json").read_text())["@graph"]
+    }
+    action = graph[graph["./"]["mentions"]["@id"]]
+    assert graph["workflow/Snakefile"]["version"] == blockshake.__version__
+    results = {one["@id"] for one in action["result"]}
+    assert {"reports/small.html", "results/small/responses.csv", "results/small/design.csv"} <= results
+    assert {"@id": "config/small.yaml"} in action["object"]
+
+
 def test_second_run_does_nothing(finished):
     assert finished.jobs() == {}
 
@@ -90,7 +107,10 @@ def test_single_sample_is_a_batch_of_one(finished):
 def test_provenance_report_needs_no_network(finished):
     answer = finished.snakemake("--report", "provenance.zip")
     assert answer.returncode == 0, answer.stderr
-    assert (finished.folder / "provenance.zip").exists()
+    with zipfile.ZipFile(finished.folder / "provenance.zip") as archive:
+        text = "\n".join(archive.read(name).decode(errors="ignore") for name in archive.namelist())
+    assert "Samples of the uncertain parameters are simulated" in text  # the description of the workflow
+    assert "Report of the study small: whether the blocks stand" in text  # the caption of a result
 
 
 def test_a_second_command_is_refused_and_touches_nothing(tmp_path):

@@ -240,8 +240,18 @@ rule make_diagnosis_report:
         templates=TEMPLATES,
         track_record=[TRACK_RECORD] if Path(TRACK_RECORD).exists() else [],
     output:
-        html=report("reports/diagnosis-{campaign}.html", category="Diagnosis"),
-        pdf=report("reports/diagnosis-{campaign}.pdf", category="Diagnosis"),
+        html=report(
+            "reports/diagnosis-{campaign}.html",
+            category="Diagnosis",
+            caption="../report/diagnosis.rst",
+            labels={"campaign": "{campaign}", "format": "HTML"},
+        ),
+        pdf=report(
+            "reports/diagnosis-{campaign}.pdf",
+            category="Diagnosis",
+            caption="../report/diagnosis.rst",
+            labels={"campaign": "{campaign}", "format": "PDF"},
+        ),
     log:
         "logs/diagnosis/{campaign}/make_diagnosis_report.log",
     conda:

@@ -3,8 +3,18 @@ rule make_report:
     input:
         unpack(lambda wildcards: files_of_report()),
     output:
-        html=report("reports/{study}.html", category="Study"),
-        pdf=report("reports/{study}.pdf", category="Study"),
+        html=report(
+            "reports/{study}.html",
+            category="Study",
+            caption="../report/study.rst",
+            labels={"study": "{study}", "format": "HTML"},
+        ),
+        pdf=report(
+            "reports/{study}.pdf",
+            category="Study",
+            caption="../report/study.rst",
+            labels={"study": "{study}", "format": "PDF"},
+        ),
     log:
         "logs/{study}/make_report.log",
     conda:
@@ -23,8 +33,18 @@ rule make_case_report:
     input:
         unpack(lambda wildcards: files_of_report(wildcards.case)),
     output:
-        html=report("reports/{study}-{case}.html", category="Study"),
-        pdf=report("reports/{study}-{case}.pdf", category="Study"),
+        html=report(
+            "reports/{study}-{case}.html",
+            category="Study",
+            caption="../report/case.rst",
+            labels={"study": "{study}", "case": "{case}", "format": "HTML"},
+        ),
+        pdf=report(
+            "reports/{study}-{case}.pdf",
+            category="Study",
+            caption="../report/case.rst",
+            labels={"study": "{study}", "case": "{case}", "format": "PDF"},
+        ),
     log:
         "logs/{study}/make_case_report/{case}.log",
     conda:

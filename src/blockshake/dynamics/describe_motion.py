@@ -31,8 +31,9 @@ def describe_motions(source, baseline, intensity=None):
     Returns
     -------
     xarray.Dataset
-        Of a set also ``spectra(record, period)`` [m/s2]; attributes ``records``, their number, and ``significant_end``,
-        the latest [s]; ``synthetic`` where any is. Of chosen records also ``chosen`` and ``aim(bound, aimed_period)``:
+        A set of records also has ``spectra(record, period)`` [m/s2]; attributes ``records``, their number, and
+        ``significant_end``, the latest [s]; ``synthetic`` where any is. Chosen ones have ``chosen`` and ``aim(bound,
+        aimed_period)``:
         median and this less and plus a standard deviation, of the records and of the target [m/s2].
     """
     wanted = {"motion": source, "baseline": baseline, "scale": 1.0, "intensity": intensity}

@@ -180,7 +180,7 @@ class DrawnMotions:
 
     @classmethod
     def of(cls, case, loaded=None):
-        """Those of a case of a study, a mapping with ``motion``, ``baseline``, ``scale`` and ``intensity``.
+        """Drawn motions of a case of a study, a mapping with ``motion``, ``baseline``, ``scale`` and ``intensity``.
 
         Raises
         ------

@@ -99,7 +99,7 @@ def synthesise(parameters):
     Returns
     -------
     GroundMotion
-        Of kind ``acceleration``; velocity and displacement end at zero; the peak acceleration is
+        A motion of kind ``acceleration``; velocity and displacement end at zero; the peak acceleration is
         ``parameters.peak_acceleration``. Same parameters, same motion: the noise comes from the raw
         bits of PCG64, which numpy keeps stable between versions, not from its distributions.
 

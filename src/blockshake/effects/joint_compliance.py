@@ -43,7 +43,7 @@ def rotation_by_compliance(lever, normal, half_width, length):
     Parameters
     ----------
     lever, normal : float64 arrays, shape (n_rows,)
-        Of the resultant from the middle [m], and its normal force [N].
+        Distance of the resultant from the middle [m], and its normal force [N].
     half_width, length : float
         The face along and across the lever [m].
     """

@@ -45,13 +45,13 @@ def convert_motion(
     components : dict of str to path, optional
         By axis the files of a record's other components, as of `load_motion`.
     unit : str, optional
-        Of a table's values, such as ``g`` or ``cm/s2``: accelerations, velocities or displacements.
+        Unit of a table's values, such as ``g`` or ``cm/s2``: accelerations, velocities or displacements.
     time, time_unit : str, optional
         Column of a table's times, by default ``time_s``, and their unit, by default s.
     step : float, optional
         Between the rows of a table without times [s]; without ``columns`` all values in order are x.
     layout : dict of str to value, optional
-        Of a table: ``separator``, ``decimal`` sign, line of the ``header`` and first line of ``data``.
+        Layout of a table: ``separator``, ``decimal`` sign, line of the ``header`` and first line of ``data``.
 
     Returns
     -------

@@ -52,7 +52,7 @@ def still_falling(structure, position, orientation, angular_velocity):
     Returns
     -------
     str or None
-        Of those that `collapse_limits` watches, the one whose weight drives the fall most.
+        Body, of those that `collapse_limits` watches, whose weight drives the fall most.
 
     Notes
     -----

@@ -37,9 +37,10 @@ def run_histories(run, structure):
         ``drift(time, body, axis)``: displacement of the mass centre since the start against the first driven body,
         in that body's frame; in the inertial frame where no body is driven [m].
 
-        Of every pair that touched, by the face that it had at the start, NaN where it had none or a shape is not
-        convex: ``normal_force(time, joint)``, positive in compression, and ``shear_force`` [N]; ``friction_ratio``,
-        shear over the largest shear that Coulomb's law at rest allows [1], NaN below 1 % of the upper body's weight;
+        Histories of every pair that touched, by the face that it had at the start, NaN where it had none or a shape
+        is not convex: ``normal_force(time, joint)``, positive in compression, and ``shear_force`` [N];
+        ``friction_ratio``, shear over the largest shear that Coulomb's law at rest allows [1], NaN below 1 % of the
+        upper body's weight;
         ``uplift`` along the normal and ``slip`` along the face, both at the middle of the face [m].
 
         ``joint_position(time, joint, axis)``: middle of what the bounding boxes of the two have in common, inertial

@@ -67,7 +67,7 @@ def quantile_ranks(size, probability):
     size : int
         The sample.
     probability : float
-        Of a smaller value, in (0, 1).
+        Probability of a smaller value, in (0, 1).
 
     Returns
     -------

@@ -36,7 +36,7 @@ def ensemble_distance(differences, first, second):
     Parameters
     ----------
     differences : float64 array, shape (n, n)
-        Of all members from each other, from `mean_differences`.
+        Mean differences of all members from each other, from `mean_differences`.
     first, second : int arrays
         Rows of the members of either ensemble; none in both.
 

@@ -270,7 +270,7 @@ def check_ends(structure, ends, parameters, where, key):
     ends : dict of str to tuple of float
         Both values by variable.
     parameters : callable
-        Of values by variable: parameters of the structure by dotted name.
+        Takes values by variable, returns parameters of the structure by dotted name.
     where, key : str
         File, and key under which the variables stand, that an error names.
     """

@@ -18,7 +18,7 @@ def has_endless_heap(path):
     Parameters
     ----------
     path : path
-        Of any file, not empty.
+        Any file, not empty.
 
     Notes
     -----

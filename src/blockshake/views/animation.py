@@ -61,7 +61,7 @@ def animate(
     view : str
         One of `VIEWS`: ``front`` (x and z), ``side`` (y and z) or ``3d``.
     magnification : float
-        Of the motion against the first driven body, displacement and rotation; the base's own motion is shown as
+        Factor on the motion against the first driven body, displacement and rotation; the base's own motion is shown as
         it is.
     speed : float
         Seconds of the run in a second of the animation.

@@ -27,7 +27,7 @@ def load_motion_table(source, layout, time, columns, unit, time_unit, baseline, 
         By channel (``x``, ``y``, ``z``) the name of a column, behind a minus where it is reversed; none, with ``step``,
         takes all values of the file, line by line, as x.
     unit : str
-        Of the columns; tells acceleration, velocity and displacement apart.
+        Unit of the columns: an acceleration, a velocity or a displacement.
     time_unit : str
     baseline : str or float
         As of `correct_baseline`: a table is corrected with a corner frequency alone.

@@ -174,7 +174,7 @@ def solid_fault(vertices, faces):
     Parameters
     ----------
     vertices, faces
-        Those of `crossings`.
+        As in `crossings`.
     """
     longest = np.ptp(vertices, axis=0).max()
     part = parts_of(faces)

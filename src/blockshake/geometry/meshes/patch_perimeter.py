@@ -55,7 +55,7 @@ def perimeter_points(vertices, normals, sides, area, spacing, inset):
     area : float
         The part [m2].
     spacing, inset : float
-        Those of `mesh_nodes`.
+        As in `mesh_nodes`.
 
     Returns
     -------

@@ -92,7 +92,7 @@ class Scene:
     def _farthest_first(self, places, corners, turns):
         """Bodies in an order in which none hides one after it, where there is such an order.
 
-        Of two convex bodies whose outlines overlap, the one on the eye's side of the face that parts them is nearer.
+        Two convex bodies whose outlines overlap: the one on the eye's side of the face that parts them is nearer.
         """
         left = sorted(range(len(places)), key=lambda body: (not self._driven[body], places[body, 2]))
         low, high = (np.array([end(own[:, :2], axis=0) for own in corners]) for end in (np.min, np.max))

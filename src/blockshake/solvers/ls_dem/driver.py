@@ -61,7 +61,7 @@ def simulate_ls_dem(
     ----------
     structure : Structure
     motion : GroundMotion or None
-        Of the driven bodies; None lets them rest.
+        Motion of the driven bodies; None lets them rest.
     parameters : LsDemParameters
     record_times : float64 array, shape (n_times,)
         Increasing from 0 [s].

@@ -90,7 +90,7 @@ def dashpot_coefficient(interfaces, a, b, ratio, stiffness, area):
     ratio : float
         Fraction of critical damping [1].
     stiffness : float
-        Of the interface, per area [N/m3].
+        Stiffness of the interface, per area [N/m3].
     area : float
         In touch [m2].
 

@@ -45,7 +45,7 @@ def simulate_nscd(structure, motion, parameters, record_times, time_step=1e-3, c
     ----------
     structure : Structure
     motion : GroundMotion or None
-        Of the driven bodies; None keeps them at rest.
+        Motion of the driven bodies; None keeps them at rest.
     parameters : NscdParameters
     record_times : float64 array, shape (n_times,)
         Increasing, the first is 0 [s]; the run ends at the last.

@@ -58,7 +58,7 @@ def settle_stacks(scene, touching, soft, state, static_step, most_steps, at_rest
     Parameters
     ----------
     scene, touching, state : ContactScene, bool array, shape (n_bodies, n_bodies), State
-        Those of `settled_state`.
+        As in `settled_state`.
     soft : bool array, shape (n_bodies,)
         A stack is settled where one of its free bodies is soft.
     static_step : callable

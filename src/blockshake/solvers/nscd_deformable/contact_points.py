@@ -154,7 +154,7 @@ def find_contacts(
     Parameters
     ----------
     bodies, polyhedra, placed, rotations, margin, layers, admittance, memory, n_stoppers
-        Those of `detect_contacts`; the polyhedra are without deformation.
+        As in `detect_contacts`; the polyhedra are without deformation.
     elastic : Elastic
     spacing : float
         The points of a joint [m].

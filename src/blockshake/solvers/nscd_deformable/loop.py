@@ -147,13 +147,13 @@ def solve_step(
     model, response : DeformableScene, ElasticResponse
         The response is that over this step.
     theta, restitution : float
-        Of the rigid motion; Newton's.
+        Weight of the end of a step, rigid motion; Newton's coefficient.
     margin : float
         Points with a larger gap are left out [m].
     joints, memory : Joints, int64 array, shape (n_bodies, n_bodies)
         The memory holds the reference faces of the pairs.
     contacts_before, share : Contacts, float
-        Of the step before; length of this step over that of the one before [1].
+        Contacts of the step before; length of this step over that of the one before [1].
     floor, tolerance : float
         Impulse below which impulses count as that [N s]; relative residual that ends the search [1].
     deformation, rate : Deformation, float64 array, shape (n_shapes,)

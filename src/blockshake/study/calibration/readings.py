@@ -84,7 +84,7 @@ def simulate_readings(test, model, settings, rows, time_steps, ensemble, store):
     rows : pandas.DataFrame
         Sampled values, index the sample, columns dotted names.
     time_steps : pandas.Series
-        Of the samples [s]; a run that does not converge is made again by half the step, down to an eighth.
+        Time step of each sample [s]; a run that does not converge is made again by half the step, down to an eighth.
     ensemble : dict
         ``seed`` of the design, of which the motions' draws are, and ``linked``, parameters that take another's value.
     store : Store

@@ -18,7 +18,7 @@ def two_level_mean(costly, cheap, many):
     Parameters
     ----------
     costly, cheap : float64 arrays, shape (n,)
-        Of both models for the same samples, at least 6.
+        Responses of both models for the same samples, at least 6.
     many : float64 array, shape (N,)
         The cheap model for these samples and others.
 
@@ -66,7 +66,7 @@ def two_levels(ensembles):
     Returns
     -------
     xarray.Dataset
-        Of the largest displacement of any marker along x relative to the slab, by sample: ``mean_peak(model)`` of the
+        The largest displacement of any marker along x relative to the slab, by sample: ``mean_peak(model)`` of the
         model alone, ``two_level_peak(model)`` and its ``_interval(bound, model)`` [m], ``coefficient``,
         ``peak_correlation`` and ``variance_gain(model)`` [1]. NaN for other models, and where a sample did not
         complete: one that fell has no largest displacement.

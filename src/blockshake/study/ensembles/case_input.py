@@ -133,7 +133,7 @@ def driving_motions(case, base, seed):
     base : xarray.Dataset, path or None
         From `measured_input`, or its file; not used where the input is commanded.
     seed : int
-        Of the design: a sample of another design has another draw of the measured motion, or of the records.
+        Seed of the design: a sample of another design has another draw of the measured motion, or of the records.
 
     Notes
     -----

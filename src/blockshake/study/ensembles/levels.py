@@ -34,7 +34,7 @@ def levels_of(case, seed, size):
 
 
 def at_level(samples, levels, level):
-    """Those of some samples, a Dataset along ``sample``, that are scaled to a level of `levels_of`."""
+    """Samples, of a Dataset along ``sample``, that are scaled to a level of `levels_of`."""
     here = [levels[int(sample)] == level for sample in samples["sample"].values]
     return samples.isel(sample=np.flatnonzero(here))
 

@@ -87,7 +87,7 @@ def likely_capacities(lower, upper, weight=1.0):
     Parameters
     ----------
     lower, upper
-        Of `fit_capacity`, which finds a dispersion above 0 in them.
+        Bounds as in `fit_capacity`, which finds a dispersion above 0 in them.
     weight : float
         A capacity in the likelihood [1].
 

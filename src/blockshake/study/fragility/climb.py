@@ -42,7 +42,7 @@ def climb_samples(runs, rows, ladder, store, seed=0):
     ladder : Ladder
     store : Store
     seed : int
-        Of the design, by which samples draw records.
+        Seed of the design, by which samples draw records.
 
     Returns
     -------

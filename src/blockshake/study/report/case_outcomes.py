@@ -106,7 +106,7 @@ def _outcome(structure, response):
 
 
 def evidence(ended):
-    """Those of `outcomes` that bear limits with about the most samples; all where none bears limits."""
+    """Outcomes that bear limits with about the most samples; all where none bears limits."""
     most = max(one.counted for one in ended.values())
     return {
         model: one

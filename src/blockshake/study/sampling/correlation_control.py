@@ -28,7 +28,7 @@ def arrange(columns, target, seed, effort):
     target : float64 array, shape (n_variables, n_variables)
         Correlation matrix, positive definite.
     seed : int or list of int
-        Of every random choice here; PCG64's raw stream, which NumPy keeps fixed.
+        Seed of every random choice here; PCG64's raw stream, which NumPy keeps fixed.
     effort : int
         Rounds of annealing. Each starts from the best order so far and only a better one
         replaces it, so that more effort never gives a larger error.

@@ -65,7 +65,7 @@ def check_correlation(matrix, names, where):
     ----------
     matrix : float64 array, shape (n, n)
     names : sequence of str, length n
-        Of the variables, for the error.
+        Names of the variables, for the error.
     where : str
         File or option to name in the error.
 

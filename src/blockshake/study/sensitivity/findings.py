@@ -135,7 +135,7 @@ def influence_words(one):
 def explained_by_motion(case):
     """Share of the spread of the largest displacement that record and level explain, by model [1].
 
-    Of cases whose samples draw motions: adjusted R squared of the logarithm of the demand on level and record, or on
+    Adjusted R squared, in cases whose samples draw motions, of the logarithm of the demand on level and record, or on
     the logarithm of the intensity where there are no levels. Models with too few samples are left out.
     """
     shares = {}

@@ -230,9 +230,9 @@ def shapley_effects(function, correlation, generator):
     Parameters
     ----------
     function : callable
-        Of scores (n, n_inputs): values (n_functions, n).
+        Takes scores (n, n_inputs), returns values (n_functions, n).
     correlation : float64 array, shape (n_inputs, n_inputs)
-        Of the inputs, which have unit variance.
+        Correlation of the inputs, which have unit variance.
     generator : numpy.random.Generator
 
     Returns

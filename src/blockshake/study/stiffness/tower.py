@@ -21,7 +21,7 @@ def tower_of(structure):
     Returns
     -------
     Structure
-        Of the bodies ``slab``, driven, of the material of the structure's first driven body, or of the blocks' own
+        The bodies ``slab``, driven, of the material of the structure's first driven body, or of the blocks' own
         without one, and ``block-1`` to ``block-4`` from the lowest up.
 
     Raises

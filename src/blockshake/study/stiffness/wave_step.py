@@ -38,7 +38,7 @@ def send_step(structure, parameters, direction, passages=3.0, rotations_blocked=
     passages : float
         Length of the test, in passages of the tower at the chain's long-wave speed [1].
     rotations_blocked : bool
-        Of the blocks under a horizontal step; a vertical one turns none.
+        Whether the blocks do not rotate under a horizontal step; a vertical one rotates none.
 
     Raises
     ------

@@ -107,7 +107,7 @@ def node_force(phi, slope, nx, ny, nz, ux, uy, uz, ox, oy, oz, closed, area, wei
     closed : float
         Change of place along the normal in the step before [m].
     area, weight, law : float, float, Law
-        Of the node [m2]; what its dashpot goes with.
+        Area of the node [m2]; factor of its dashpot.
 
     Returns
     -------
@@ -149,7 +149,7 @@ def side_forces_into(packets, located, first, last, start, law, gamma_s, lanes, 
     Parameters
     ----------
     packets, located, first, last, start
-        Those of `locate_nodes_into`: the nodes' springs are updated, their forces overwritten.
+        As in `locate_nodes_into`: the nodes' springs are updated, their forces overwritten.
     law, gamma_s : Law, float
         Dashpot next to the shear springs, per unit of a node's damping weight.
     lanes, sums : float64 arrays, shape (N_SUMS * LANES,) and (N_SUMS,)

@@ -87,8 +87,8 @@ def facing_key(surfaces, a, b, R, d):
 
     Notes
     -----
-    Of the pairs of flats that are parallel within 20 degrees those meet that are farthest apart along their normal, or
-    overlap least.
+    Two bodies meet on the pair of flats, parallel within 20 degrees, that is farthest apart along its normal, or
+    overlaps least.
     """
     shape_a, shape_b = surfaces.shape[a], surfaces.shape[b]
     if surfaces.wide[shape_a] == 0.0 or surfaces.wide[shape_b] == 0.0:

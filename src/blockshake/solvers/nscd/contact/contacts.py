@@ -132,7 +132,7 @@ def detect_contacts(
     rotations : float64 array, shape (n_bodies, 3, 3)
         Body to world.
     margin, shrink, memory
-        Those of `detect_pair_into`.
+        As in `detect_pair_into`.
     layers : float64 array, shape (n_bodies, n_bodies)
         Compliance of the layers in the joints [m3/N].
     admittance : float

@@ -56,7 +56,7 @@ def linear_law_into(contacts, contact, u, stiffness, D, c):
     contacts, contact, u : Contacts, int, three floats
         ``u``: velocity of the contact that belongs to its impulse, along its basis [m/s].
     stiffness : float
-        Of the proximal term, in effective masses of the contact [1]: the error it leaves in the contact
+        Stiffness of the proximal term, in effective masses of the contact [1]: the error it leaves in the contact
         law is the change of the impulse divided by this.
     D, c : float64 arrays, shape (3, 3) and (3,)
         Overwritten, along the contact's basis [kg, N s].
@@ -108,7 +108,7 @@ def linear_law_into(contacts, contact, u, stiffness, D, c):
 def _columns_into(slope, transposed, basis, arm, T):
     """Impulse [N s] of a contact on its second body, world frame, per velocity of a body at ``arm``: (3, 6).
 
-    Of the linear law, or of the one with ``slope`` transposed.
+    With ``transposed`` the slope of the linear law is transposed.
     """
     for i in range(3):
         T[i, 0] = T[i, 1] = T[i, 2] = 0.0

@@ -185,7 +185,7 @@ def newton_step_into(problem, contacts, stiffness, fresh, operator, motion, laws
     problem, contacts : Problem, Contacts
         ``contacts.impulse`` is changed.
     stiffness : float
-        Of the proximal term, as in `linear_law_into`.
+        Stiffness of the proximal term, as in `linear_law_into`.
     fresh : bool
         Factor anew even where the kept factorisation belongs to these contacts.
     operator, motion, laws : Operator, ContactMotion, Laws

@@ -71,7 +71,7 @@ def solve_contacts_into(problem, contacts, floor, tolerance, max_iterations, mot
     problem, contacts : Problem, Contacts
         ``contacts.impulse`` holds the start and, afterwards, the answer.
     floor, tolerance, max_iterations : float, float, int
-        Those of `blockshake.solvers.nscd.solve.solver.solve_contacts_into` [N s, 1, 1].
+        As in `blockshake.solvers.nscd.solve.solver.solve_contacts_into` [N s, 1, 1].
     motion : ContactMotion
         Overwritten with the velocities of the answer.
     factor : Factor
