@@ -2,7 +2,6 @@
 
 import itertools
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -154,15 +153,6 @@ def test_walls_have_the_blocks_asked_for_in_half_bond(n_blocks):
     for below, above in itertools.pairwise(ends):
         assert below[-1] == above[-1]
         assert not set(below[:-1]) & set(above[:-1])
-
-
-def test_the_comparison_with_yade_skips_where_there_is_none(tmp_path):
-    command = [sys.executable, BENCH / "compare_yade.py", "--output", tmp_path / "yade.json"]
-    empty = {**os.environ, "PATH": str(tmp_path)}
-    run = subprocess.run(command, capture_output=True, text=True, env=empty)
-    assert (run.returncode, run.stderr) == (0, "")
-    assert run.stdout == "skipped: there is no yade on this machine\n"
-    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("peer", ["lmgc90", "mujoco"])

@@ -45,7 +45,7 @@ def test_a_lean_is_told_from_a_hundredth_of_the_size_on(standing, angle, told):
     words = settling(standing, position, orientation)
     assert bool(words) == told
     if told:
-        assert words.startswith("block moved by 1.5% of its size and leaned by 1.1 degrees before the ground")
+        assert words.startswith("block moved by 1.5% of its size and tilted by 1.1 degrees before the ground")
     # the slab carries it along
     assert settling(standing, position + np.array([0.3, 0.0, 0.0]), orientation) == words
 

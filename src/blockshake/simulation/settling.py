@@ -41,10 +41,10 @@ def settling(structure, position, orientation):
         moved = position[body] - lift - structure.position[body] + vertices @ (now[body] - before[body]).T
         share = np.linalg.norm(moved, axis=1).max() / np.ptp(vertices, axis=0).max()
         if share > worst:
-            lean = np.degrees(np.arccos(np.clip(now[body, 2] @ before[body, 2], -1.0, 1.0)))
+            tilt = np.degrees(np.arccos(np.clip(now[body, 2] @ before[body, 2], -1.0, 1.0)))
             worst = share
             words = (
-                f"{structure.body_names[body]} moved by {share:.1%} of its size and leaned by {lean:.2g} degrees "
+                f"{structure.body_names[body]} moved by {share:.1%} of its size and tilted by {tilt:.2g} degrees "
                 "before the ground moved: its contacts do not hold it as it was placed"
             )
     return words

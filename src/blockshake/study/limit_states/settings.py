@@ -22,7 +22,7 @@ class Measure(NamedTuple):
 
 
 MEASURES = {
-    "tilt": Measure("rotation", "rad", "largest lean of a body from upright, against the base"),
+    "tilt": Measure("rotation", "rad", "largest tilt of a body from upright, against the base"),
     "drift": Measure(
         "displacement", "m", "largest horizontal displacement of a mass centre against the base"
     ),
