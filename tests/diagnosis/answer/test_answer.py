@@ -74,7 +74,29 @@ def test_causes_are_added_one_by_one_each_ranked_beside_those_before_it_until_no
 
     groups = find_causes(ranked, lambda cause, known: by_odds(cause) + share_of(known))
     assert list(map(causes, groups)) == [("push", "drag"), ("eccentricity",)]
-    assert asked == [[], ["push"], ["push", "eccentricity"]]  # 10 nats are less than 6 and a tenth of 130
+    assert asked[0] == []
+    assert asked[-1] == ["push", "eccentricity"]  # 10 nats are less than 6 and a tenth of 130
+
+
+@pytest.mark.parametrize(
+    ("bearing", "expected"), [(44.0, ("eccentricity", "reduced-bearing")), (30.0, ("changed-edge",))]
+)
+def test_a_cause_that_takes_up_what_two_made_gives_way_to_them_where_the_odds_tell(bearing, expected):
+    """A changed edge of 179 nats; an eccentric block of 159, and 44 or 30 of a narrow bearing given that.
+
+    The pair exceeds the edge by 21 or 7 nats: coarsened, by odds of e^5 or e^2. Odds of e^3 tell.
+    """
+    stages = {
+        (): rivals(changed_edge=179.0, eccentricity=159.0, reduced_bearing=44.0),
+        ("changed-edge",): rivals(reduced_bearing=16.0),
+        ("eccentricity",): rivals(reduced_bearing=bearing, changed_edge=28.0),
+        ("reduced-bearing",): rivals(eccentricity=161.0, changed_edge=155.0),
+    }
+    groups = find_causes(
+        lambda known: stages.get(tuple(one.cause for one in known), []),
+        lambda cause, known: by_odds(cause) + further_need(False, known),
+    )
+    assert tuple(cause for group in groups for cause in causes(group)) == expected
 
 
 def test_a_cause_within_chance_is_taken_out_before_another_is_asserted():

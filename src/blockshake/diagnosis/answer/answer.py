@@ -1,6 +1,6 @@
 """From evidences to an answer: none, a named cause, a set that cannot be distinguished, a combination, or unknown."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,6 +13,7 @@ _MORE_AFTER_SLAB = 10.0  # nats more of a cause in the joints of a slab that has
 _MORE_AFTER_FIRST = 5.0  # nats more of a second cause in the joints
 _SHARE_OF_FIRST = 0.1  # of the first one's gain, in addition
 _MOST_CAUSES = 3
+_LEADING = 4  # causes that are tried with a second one each
 COARSENING = 0.05  # share of what it explains that the form of a cause may leave unexplained
 
 
@@ -117,6 +118,9 @@ def find_causes(ranked, needed):
     -----
     A cause that ranks before the first one that is no chance, and whose odds over none would do, is an error that this
     structure's own runs show: it becomes a group that is not asserted, and others are compared with it.
+
+    One cause may take up what two made: the first one is the strongest of those that, each with the best one given it,
+    explain as much as any pair does within the odds that tell.
     """
     groups = []
     while len(groups) < _MOST_CAUSES:
@@ -126,18 +130,38 @@ def find_causes(ranked, needed):
         if not strong:
             break
         first = next(one for one in rivals if one is strong[0] or one.score > ODDS)
-        groups.append(replace(group_of(first, rivals), asserted=first is strong[0]))
+        scores = {rival.cause: rival.score for rival in rivals}
+        if first is strong[0] and not known:
+            pairs = _pair_scores(strong[:_LEADING], scores, ranked, needed)
+            most = max(pairs.values())
+            first = next(one for one in strong if coarsened(most - pairs[one.cause], most) < ODDS)
+            scores |= {} if first is strong[0] else pairs
+        groups.append(group_of(first, rivals, scores, asserted=first in strong))
     while groups and not groups[-1].asserted:
         groups.pop()
     return groups
 
 
-def group_of(first, ranked):
-    """`Group` of a cause and all that cannot be distinguished from it."""
+def _pair_scores(leading, scores, ranked, needed):
+    """Score of each of some `Alternative` by name, with that of the best weaker cause given it that is no chance.
 
-    odds = {rival.cause: coarsened(first.score - rival.score, first.score) for rival in ranked}
-    near = tuple(rival for rival in ranked if odds[rival.cause] < ODDS)
-    return Group(near, odds, {rival.cause: rival.gain for rival in ranked})
+    ``scores`` are those of all causes alone.
+    """
+    pairs = {}
+    for first in leading:
+        further = (one for one in ranked([first]) if one.gain > needed(one.cause, [first]))
+        weaker = (one.score for one in further if scores.get(one.cause, 0.0) <= first.score)
+        pairs[first.cause] = first.score + next(weaker, 0.0)
+    return pairs
+
+
+def group_of(first, ranked, scores=None, asserted=True):
+    """`Group` of a cause and all that cannot be distinguished from it, by their own scores or by others, by name."""
+    scores = scores or {rival.cause: rival.score for rival in ranked}
+    best = scores[first.cause]
+    odds = {cause: max(coarsened(best - score, best), 0.0) for cause, score in scores.items()}
+    near = [rival for rival in ranked if rival is not first and odds[rival.cause] < ODDS]
+    return Group((first, *near), odds, {rival.cause: rival.gain for rival in ranked}, asserted)
 
 
 def further_need(slab, known=()):

@@ -1,5 +1,6 @@
 """The decision on seen tests: evidences of all causes ranked, the answer with its sizes, and what was seen of it."""
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -152,21 +153,32 @@ def _in_joints(seen, evidence, closed, slab, thresholds):
 
     ``closed`` is as of `rank`, and ``slab`` states whether the slab's own motion has a cause.
     """
-    stages, joined = [evidence], joined_bodies(seen)
+    joined = joined_bodies(seen)
+
+    @cache
+    def stage(*known):
+        if not known:
+            return evidence
+        last, key = stage(*known[:-1]), known[-1]
+        if last is None or key not in last.keys:  # it shows in closed joints alone
+            return None
+        return last.plausible(key).given([last.best(key)])
+
+    def given(known):
+        return stage(*((one.cause, one.place) for one in known))
 
     def ranked(known):
         if not known:
             return rank(evidence, closed, joined)
-        key, last = (known[-1].cause, known[-1].place), stages[-1]
-        if last is None or key not in last.keys:  # it shows in closed joints alone
-            return []
-        stages.append(last.plausible(key).given([last.best(key)]))
-        return rank(stages[-1], {}, joined, known)
+        return rank(given(known), {}, joined, known)
 
     def needed(cause, known):
         return thresholds.of(cause) + further_need(slab, known)
 
-    return stages, find_causes(ranked, needed)
+    groups = find_causes(ranked, needed)
+    firsts = [group.rivals[0] for group in groups]
+    stages = [given(firsts[:count]) for count in range(len(firsts) + 1)]
+    return [evidence, *(one for one in stages[1:] if one)], groups
 
 
 def _together(stages, groups):
