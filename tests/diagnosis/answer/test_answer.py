@@ -28,6 +28,9 @@ def rivals(**scores):
     return sorted(found, key=lambda one: -one.score)
 
 
+WEAK = "weak-joint"
+
+
 def causes(group):
     return tuple(one.cause for one in group.rivals)
 
@@ -57,11 +60,17 @@ def test_a_rival_within_the_odds_is_in_the_set_and_forms_from_outside_are_said()
 
 def test_a_second_cause_needs_more_beside_a_large_first_one():
     small, large = rivals(push=1e-9), rivals(push=1000.0)
-    assert further_need(False) == 0.0
-    assert further_need(False, large) - further_need(False, small) == pytest.approx(100.0)
-    assert further_need(True, small) > further_need(False, small) > 0.0
+    assert further_need(WEAK, False) == 0.0
+    assert further_need(WEAK, False, large) - further_need(WEAK, False, small) == pytest.approx(100.0)
+    assert further_need(WEAK, True, small) > further_need(WEAK, False, small) > 0.0
     assert found(rivals(weak_joint=15.0), more=10.0) is None
     assert causes(found(rivals(weak_joint=17.0), more=10.0)) == ("weak-joint",)
+
+
+def test_no_form_from_outside_is_added_to_another():
+    assert np.isinf(further_need("drag", False, rivals(loose_weight=400.0)))
+    assert np.isfinite(further_need("drag", False, rivals(eccentricity=400.0)))
+    assert np.isfinite(further_need("eccentricity", False, rivals(loose_weight=400.0)))
 
 
 def test_causes_are_added_one_by_one_each_ranked_beside_those_before_it_until_none_is_strong():
@@ -94,7 +103,7 @@ def test_a_cause_that_takes_up_what_two_made_gives_way_to_them_where_the_odds_te
     }
     groups = find_causes(
         lambda known: stages.get(tuple(one.cause for one in known), []),
-        lambda cause, known: by_odds(cause) + further_need(False, known),
+        lambda cause, known: by_odds(cause) + further_need(cause, False, known),
     )
     assert tuple(cause for group in groups for cause in causes(group)) == expected
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from blockshake.diagnosis.answer.thresholds import ODDS, score_of
 from blockshake.diagnosis.evidence.explanation import mean_evidence
+from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
 from blockshake.effects.registry import EFFECTS
 
@@ -164,14 +165,20 @@ def group_of(first, ranked, scores=None, asserted=True):
     return Group((first, *near), odds, {rival.cause: rival.gain for rival in ranked}, asserted)
 
 
-def further_need(slab, known=()):
-    """Gain that is needed beyond the usual one.
+def further_need(cause, slab, known=()):
+    """Gain that a cause needs beyond the usual one.
 
     ``slab`` states whether the slab's own motion has a cause, and ``known`` are `Alternative` found in the joints
-    before.
+    before. Two forms from outside are described as one: none is added to another.
     """
-    more = _MORE_AFTER_SLAB if slab else 0.0
-    return more + _MORE_AFTER_FIRST + share_of(known) if known else more
+    if cause in FORMS and any(one.cause in FORMS for one in known):
+        return np.inf
+    return (_MORE_AFTER_SLAB if slab else 0.0) + (after(known) if known else 0.0)
+
+
+def after(known):
+    """Gain more that is needed after some `Alternative`: errors of their form."""
+    return _MORE_AFTER_FIRST + share_of(known)
 
 
 def share_of(known):

@@ -173,7 +173,7 @@ def _in_joints(seen, evidence, closed, slab, thresholds):
         return rank(given(known), {}, joined, known)
 
     def needed(cause, known):
-        return thresholds.of(cause) + further_need(slab, known)
+        return thresholds.of(cause) + further_need(cause, slab, known)
 
     groups = find_causes(ranked, needed)
     firsts = [group.rivals[0] for group in groups]

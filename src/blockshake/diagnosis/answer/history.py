@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.special import logsumexp
 
-from blockshake.diagnosis.answer.answer import further_need
+from blockshake.diagnosis.answer.answer import after
 from blockshake.diagnosis.answer.decision import Estimate, History
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_of
 from blockshake.diagnosis.answer.size import FORM, NINE_TENTHS, read_sizes, units_of
@@ -40,7 +40,7 @@ def histories(evidence, given_first, first, seen):
     """
     if evidence is None:
         return ()
-    more = further_need(False, [first]) if first and (first.cause, first.place) in evidence.keys else 0.0
+    more = after([first]) if first and (first.cause, first.place) in evidence.keys else 0.0
     own = _own(evidence, first, seen) if more else None
     of_edges = own is not None and first.cause in _OF_EDGES
     others = (quantity for quantity in _UNDAMAGED if not (of_edges and quantity == EDGES))
