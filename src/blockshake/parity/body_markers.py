@@ -74,10 +74,19 @@ class BodyMarkers:
 
 
 def bodies_with_markers(structure, tests, axes=(1.0, 1.0, 1.0)):
-    """`BodyMarkers` of every body that has three markers, with all directions measured, in all tests, by its name."""
+    """`BodyMarkers` of every body that has three markers, with all directions measured, in all tests, by its name.
+
+    A marker that no test reads, one whose readings were left out, is none.
+    """
     shared = set.intersection(*(set(whole_markers(test)) for test in tests.values()))
+    shared &= {str(name) for test in tests.values() for name in _read(test)}
     bodies = {name: BodyMarkers.of(structure, name, tests, shared, axes) for name in structure.body_names}
     return {name: body for name, body in bodies.items() if len(body.markers) >= FEWEST_MARKERS}
+
+
+def _read(test):
+    """Names of the markers of which anything was read."""
+    return test["marker"].values[np.isfinite(test["marker_displacement"]).any(["time", "axis"])]
 
 
 class MeasuredPose(NamedTuple):

@@ -22,7 +22,7 @@ from blockshake.parity.kinds.clock import clock_findings, clock_lags
 from blockshake.parity.kinds.drift import drift_findings, frame_drift, short_lines
 from blockshake.parity.kinds.exchange import channel_exchanges, marker_exchanges
 from blockshake.parity.kinds.gain import channel_gains, gain_findings
-from blockshake.parity.kinds.saturation import saturation
+from blockshake.parity.kinds.saturation import limited_markers, saturation
 from blockshake.parity.transducer_readings import held_readings
 
 LEVEL = 0.01  # chance of any finding on a campaign of faultless sensors
@@ -156,6 +156,7 @@ def check_parity(tests, structure, sensors, level=LEVEL):
         findings.extend(faults)
         return {name: corrected(test, name, structure, faults) for name, test in tests.items()}
 
+    tests = without(limited_markers(bodies_with_markers(structure, tests, axes).values(), noise, share))
     scaled = body_gains(structure, tests, sensors, share)
     tests = without(scaled)
     tests = without(marker_exchanges(structure, tests, noise, share))

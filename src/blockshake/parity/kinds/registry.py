@@ -14,5 +14,6 @@ _KINDS = (
     clock.LAG,
     clock.SKEW,
     saturation.RANGE,
+    saturation.LIMIT,
 )
 KINDS = {kind.quantity: kind for kind in _KINDS}
