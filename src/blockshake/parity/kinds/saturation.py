@@ -12,9 +12,9 @@ from blockshake.parity.finding import chance_of_misfit
 from blockshake.parity.kinds.kind import Kind
 
 _TRIED = np.linspace(0.2, 0.95, 16)  # of the largest motion; ends of the range
-_FEWEST = 20  # readings beyond the end
+_FEWEST_BEYOND = 20  # readings beyond the end
 _BEYOND, _STILL = 10.0, 3.0  # standard deviations: of the motion there, and of the readings that stand still
-_SEGMENT = 40  # readings that count as one: their noise may be slow
+_ALIKE = 40  # readings that count as one: their noise may be slow
 
 
 def _leave_out(test, findings, structure):
@@ -94,7 +94,7 @@ def _limit(read, moved, noise):
     best = None
     for end in _TRIED * np.abs(moved).max(initial=0.0):
         beyond = np.abs(moved) > end + _STILL * noise
-        if beyond.sum() < _FEWEST or np.abs(moved).max() < end + _BEYOND * noise:
+        if beyond.sum() < _FEWEST_BEYOND or np.abs(moved).max() < end + _BEYOND * noise:
             continue
         stands = np.abs(read[beyond])
         if stands.std() > _STILL * noise:
@@ -108,4 +108,4 @@ def _limit(read, moved, noise):
     limit, after = best
     gain = (moved @ read) / (moved @ moved)
     before = min(((read - moved) ** 2).sum(), ((read - gain * moved) ** 2).sum())
-    return limit, chance_of_misfit(before, after, _SEGMENT * after / len(read))
+    return limit, chance_of_misfit(before, after, _ALIKE * after / len(read))
