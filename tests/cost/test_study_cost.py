@@ -26,13 +26,13 @@ def test_every_run_of_the_default_study_is_counted(monkeypatch):
     )
     monkeypatch.setattr(study_cost, "diagnosis_cost", lambda folder, effort, tried: [])
     monkeypatch.setattr(study_cost, "planned_jobs", lambda command: CostPart("jobs", 0, 0.0))
-    samples = 2 * 4 * 50 + 2 * (6 + 6 + 6 + 3)
-    twins = 4 * 4 - 2  # of every model and case, but for the two that run three samples
+    samples = 2 * 4 * 50 + 2 * (6 + 6 + 6 + 1)
+    twins = 4 * 4 - 2  # of every model and case, but for the two that run one sample
     climbs = 2 * 20 * 23  # two cases, 20 samples, 0.5 to 6 by 0.25
-    # four cases by LS-DEM of six open tests, the first one by rigid blocks too; steps go with the root of
+    # four cases by LS-DEM of two open tests, the first one by rigid blocks too; steps go with the root of
     # the stiffness, evenly drawn in its logarithm from 0.03 to 3
     softer = 2.0 * (np.sqrt(3.0) - np.sqrt(0.03)) / np.log(100.0)
-    opened = 20 * (softer * 4 * 6 + 6)
+    opened = 20 * (softer * 4 * 2 + 2)
     parts = study_cost.study_cost("config/study.yaml")
     runs = samples + 2 * twins + climbs + opened
     # an open test drives from the start of its command on, 2 to 4 ms after its first reading

@@ -206,7 +206,7 @@ def test_check_says_what_a_good_file_is(monkeypatch):
     assert "a motion of 25 s, given as acceleration; peaks along x: " in check("alkion")
     said = check("config/study.yaml")
     assert said.startswith(
-        "a study of 4 cases by ls-dem (50 samples), nscd-rigid (50 samples), nscd-elastic (3 to 6 samples), "
+        "a study of 4 cases by ls-dem (50 samples), nscd-rigid (50 samples), nscd-elastic (1 to 6 samples), "
     )
 
 

@@ -30,7 +30,13 @@ def finished(tmp_path_factory):
     checkout = Checkout(tmp_path_factory.mktemp("checkout"))
     answer = checkout.snakemake()
     assert answer.returncode == 0, answer.stdout + answer.stderr
+    checkout.said = answer.stdout
     return checkout
+
+
+def test_the_page_is_there_after_the_first_case_by_the_first_model(finished):
+    (line,) = [line for line in finished.said.splitlines() if line.startswith("report so far: ")]
+    assert line == "report so far: reports/small.html, with configuration-1 by LS-DEM; 1 left"
 
 
 def test_study_ends_with_its_reports(finished):

@@ -238,6 +238,9 @@ def files_of_report(only=None):
         "templates": TEMPLATES,
         "motions": [f"{folder}/motions/{motion}.nc" for motion in sorted(motions)],
         "design": [f"{folder}/design.{suffix}" for suffix in ("csv", "json")],
+        "so_far": (
+            [] if only else [f"{folder}/so-far/{stage}" for stage in range(len(CASES))]
+        ),
         **{
             analysis.name: [
                 f"{folder}/{file}" for file in analysis.files(config, only).values()

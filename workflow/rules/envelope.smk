@@ -9,6 +9,7 @@ rule make_envelope:
         shown="results/{study}/shown/{model}/{case}.nc",
     log:
         "logs/{study}/make_envelope/{model}/{case}.log",
+    priority: for_first_picture
     conda:
         "../envs/blockshake.yaml"
     params:

@@ -7,6 +7,7 @@ rule measure_input:
         "results/{study}/inputs/{case}.nc",
     log:
         "logs/{study}/measure_input/{case}.log",
+    priority: for_first_picture
     conda:
         "../envs/blockshake.yaml"
     params:

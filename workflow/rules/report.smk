@@ -1,3 +1,32 @@
+rule write_so_far:
+    """The study's page while it runs: stage 0 is the first case by the first model, each other one a case by all models.
+
+    The page has the name of the report, which takes its place, and is therefore no output of this rule.
+    """
+    input:
+        lambda wildcards: expand(
+            "results/{study}/{kind}/{model}/{case}.nc",
+            study=wildcards.study,
+            kind=["envelopes", "samples"],
+            model=MODELS if int(wildcards.stage) else FIRST.model,
+            case=list(CASES)[max(int(wildcards.stage) - 1, 0)],
+        ),
+    output:
+        touch("results/{study}/so-far/{stage}"),
+    log:
+        "logs/{study}/write_so_far/{stage}.log",
+    priority: 1
+    conda:
+        "../envs/blockshake.yaml"
+    params:
+        study=CHECKED.model_dump(mode="json"),
+        results="results/{study}",
+        html="reports/{study}.html",
+        source=source_of("write_so_far"),
+    script:
+        "../scripts/write_so_far.py"
+
+
 rule make_report:
     """The study as one self-contained page and as a PDF, from the same content."""
     input:

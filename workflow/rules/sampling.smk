@@ -5,6 +5,7 @@ rule draw_samples:
         summary="results/{study}/design.json",
     log:
         "logs/{study}/draw_samples.log",
+    priority: for_first_picture
     conda:
         "../envs/blockshake.yaml"
     params:

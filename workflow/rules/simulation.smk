@@ -4,6 +4,7 @@ rule compile_kernels:
         "results/kernels/{model}-{digest}.json",
     log:
         "logs/compile_kernels/{model}-{digest}.log",
+    priority: for_first_picture
     conda:
         "../envs/blockshake.yaml"
     script:
@@ -22,6 +23,7 @@ rule simulate_batch:
         "results/{study}/runs/{model}/{case}/{batch}.nc",
     log:
         "logs/{study}/simulate_batch/{model}/{case}/{batch}.log",
+    priority: for_first_picture
     conda:
         "../envs/blockshake.yaml"
     resources:

@@ -9,6 +9,7 @@ rule calibrate_stiffness:
         waves="results/{study}/waves/{case}.nc",
     log:
         "logs/{study}/calibrate_stiffness/{case}.log",
+    priority: for_first_picture
     conda:
         "../envs/blockshake.yaml"
     params:

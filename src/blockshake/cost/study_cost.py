@@ -56,7 +56,7 @@ def _runs(config, model, case):
     planned = config.calibration
     if planned is not None and case.name in planned.cases.get(model, ()):
         # a test is simulated for its record where that is shorter than the case
-        shares = [min(record / case.duration, 1.0) for record in _open_records(case)]
+        shares = [min(record / case.duration, 1.0) for record in _records(planned, case)]
         steps = planned.size * planned.steps(config.ensemble.distributions, solver_of(model))
         runs[f"calibration of {case.name}, {model}"] = planned.size * len(shares), steps * sum(shares)
     climbs = config.fragility
@@ -66,8 +66,8 @@ def _runs(config, model, case):
     return runs
 
 
-def _open_records(case):
-    """Lengths of the open tests of a case's campaign [s]."""
+def _records(calibration, case):
+    """Lengths of the open tests of a case's campaign that the calibration simulates [s]."""
     campaign = load_campaign(case.measured.campaign)
-    times = [load_test(campaign, name)["time"].to_numpy() for name in campaign.open]
+    times = [load_test(campaign, name)["time"].to_numpy() for name in calibration.chosen(campaign)]
     return [float(time[-1] - record_start(time)) for time in times]

@@ -20,6 +20,7 @@ from blockshake.working_folder import hold
 
 _SAMPLE = re.compile(r"^(\S+) (\S+) sample (\d+), (kept|simulated): .*?(?:; took ([\d.e+]+) s)?$")
 _IDLE = "Nothing to be done"
+_SO_FAR = "report so far: "
 _FILES = ("structure", "motion")
 
 
@@ -162,6 +163,8 @@ class _Progress(Listener):
                 self.done[pair].add(int(found[3]))
                 self.costs[pair] += [float(found[5])] if found[5] else []
                 self._tell(pair)
+        elif line.startswith(_SO_FAR):
+            self.say(line)
 
     def count(self, done, total):
         if not self.runs_left():

@@ -404,12 +404,17 @@ def check_calibration(settings, config, structures, where):
             where,
             f"calibration.linked.{name}",
         )
+    _each_once(settings.tests or (), where, "calibration.tests")
     for model, names in settings.cases.items():
         key = f"calibration.cases.{model}"
         _one_of(model, config.models, where, key)
         _each_once(names, where, key)
         for name in names:
             _one_of(name, measured, where, key, "cases with a measured test: ")
+            campaign = load_campaign(config.case(name).measured.campaign)
+            if not settings.chosen(campaign):
+                expected = f"expected an open test of {name}: {', '.join(campaign.open)}"
+                raise InputError(where, "calibration.tests", expected)
             structure = structures[config.case(name).structure]
             used = [parameter for parameter in ranges if has_use(model, structure, parameter)]
             if not used:

@@ -1,6 +1,7 @@
 """Settings of the joint calibration: ranges, and the one line that states what is wrong in a configuration."""
 
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -45,6 +46,12 @@ def test_one_parameter_is_the_search_of_the_paper(monkeypatch):
     found = load_config("config/paper.yaml").calibration
     assert found.ranges_of(TABLE_2) == {"friction.concrete.concrete": Range(lowest=0.3, highest=0.8)}
     assert found.linked == {"friction.concrete.foundation": "friction.concrete.concrete"}
+
+
+@pytest.mark.parametrize(("tests", "chosen"), [(None, ["weak", "strong"]), (("strong", "other"), ["strong"])])
+def test_the_tests_that_are_named_are_simulated(tests, chosen):
+    settings = CalibrationSettings(cases={"ls-dem": ("one",)}, tests=tests)
+    assert settings.chosen(SimpleNamespace(open={"weak": None, "strong": None})) == chosen
 
 
 def test_a_linked_friction_is_not_calibrated_by_itself():

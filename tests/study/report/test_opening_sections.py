@@ -27,7 +27,7 @@ def test_a_record_is_said_with_its_format_and_baseline(fake):
 
 def test_collapse_and_quantiles_are_those_of_the_files_with_limits(fake):
     content = load_content(fake.study, fake.results)
-    table = probability_table(content)
+    table = probability_table(content.stripes)
     rows = {row[:2]: row[2:] for row in table.rows}
     # one collapsed and one failed of six: 1 of 5 counts; Clopper and Pearson's limits of 1 and of 2 of 6
     counted, collapse, drift, *_ = rows["configuration-4, top-face", "NSCD rigid"]

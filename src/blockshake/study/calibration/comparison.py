@@ -35,7 +35,7 @@ _FEWEST = 0.9  # of the samples, that have a reading: with fewer some values wou
 
 
 def compare_open_tests(case, campaign, model, given, store):
-    """Distances of the samples' readings of all open tests of a case from the measured ones and from each other.
+    """Distances of the samples' readings of a case's open tests from the measured ones and from each other.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def compare_open_tests(case, campaign, model, given, store):
     run_settings = {**given["models"][model], "output_rate": given["output_rate"]}
     steps = _time_steps(drawn, used, run_settings["time_step"])
     tests = {}
-    for name in load_campaign(campaign).open:
+    for name in settings.chosen(load_campaign(campaign)):
         test = open_test(case, campaign, name)
         store.say(f"{name}: {test.case['motion']} at {test.case['scale']:g}, {test.case['duration']:.4g} s")
         run = run_settings, rows, steps, ensemble, store

@@ -10,6 +10,7 @@ from blockshake.pages.wording import (
     MISSING,
     count_words,
     given,
+    listed,
     model_label,
     number,
     parameter_label,
@@ -31,8 +32,10 @@ def calibration(content):
     found = content.calibration
     if found is None:
         return None
+    tests = content.study["calibration"].get("tests")
+    which = f"The open tests {listed(tests)} of the cases" if tests else "All open tests of the cases"
     text = (
-        f"All open tests of the cases, each simulated with {found['size']} samples of the measured motion. "
+        f"{which}, each simulated with {found['size']} samples of the measured motion. "
         f"{_drawn(found['parameters'])} The samples near a value are scored by the continuous ranked probability score "
         "of two readings: the markers' displacement relative to the slab, and the spectrum of the blocks' "
         "accelerations. "

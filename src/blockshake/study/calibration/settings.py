@@ -67,6 +67,9 @@ class CalibrationSettings(Strict):
     size: Whole = Field(
         40, ge=FEWEST, description="samples by which every test is simulated; fewer would give no range [1]"
     )
+    tests: tuple[str, ...] | None = Field(
+        None, min_length=1, description="names of the open tests that are simulated; by default all"
+    )
     parameters: tuple[str, ...] | None = Field(
         None,
         min_length=1,
@@ -81,6 +84,10 @@ class CalibrationSettings(Strict):
         "and k_s over those of the wave speed, or `hollow` of the blocks' faces over their edge; by default friction "
         "0.2 to 1, of steel 0.1 to 0.8, restitution 0.05 to 0.95, stiffness 0.03 to 3, hollow 1e-5 to 3e-3",
     )
+
+    def chosen(self, campaign):
+        """Names of the open tests of a campaign that are simulated."""
+        return [name for name in campaign.open if self.tests is None or name in self.tests]
 
     def steps(self, variables, model):
         """Mean number of steps of a sample by a `Model`, over that of the usual stiffness [1]."""

@@ -64,11 +64,11 @@ def _draw_ensemble(axes, envelope):
     thinned = envelope.isel(time=slice(None, None, stride))
     bounds = 1e3 * thinned["marker_envelope"]
     inner = 1e3 * thinned["marker_displacement"]
-    for low, high, color in (
-        (bounds.sel(bound="lower"), bounds.sel(bound="upper"), LIGHT_GREY),
-        (inner.sel(quantile=0.05), inner.sel(quantile=0.95), GREY),
+    for low, high, color, edge in (
+        (bounds.sel(bound="lower"), bounds.sel(bound="upper"), LIGHT_GREY, 0.0),
+        (inner.sel(quantile=0.05), inner.sel(quantile=0.95), GREY, 0.6),  # a closed band is a line
     ):
-        axes.fill_between(thinned["time"], low, high, color=color, linewidth=0.0)
+        axes.fill_between(thinned["time"], low, high, color=color, linewidth=edge)
     width = envelope["marker_envelope"].sel(bound="upper") - envelope["marker_envelope"].sel(bound="lower")
     for bound in ("lower", "upper") if float(width.max()) > STILL else ():  # bounds of a line hide it
         axes.plot(

@@ -34,9 +34,9 @@ class Response:
 
     envelope: xr.Dataset
     samples: xr.Dataset
-    shown: xr.Dataset
+    shown: xr.Dataset | None  # none while the study runs, as the others
     comparison: xr.Dataset | None
-    sensitivity: xr.Dataset
+    sensitivity: xr.Dataset | None
     cloud: xr.Dataset | None = None
     indices: xr.Dataset | None = None  # from `indices_of_case`
     limits: xr.Dataset | None = None  # from `limit_states_of_case`, where the study has limit states
@@ -50,7 +50,8 @@ class Response:
         limits = self.limits
         if limits is not None:
             limits = limits[["value", "exceeded"]].sel(sample=samples["sample"].values)
-        of_level = {name: getattr(self, name).sel(level=level) for name in ("sensitivity", "indices")}
+        known = {name: one for name in ("sensitivity", "indices") if (one := getattr(self, name)) is not None}
+        of_level = {name: one.sel(level=level) for name, one in known.items()}
         return replace(self, envelope=envelope, samples=samples, limits=limits, **of_level)
 
 
@@ -90,7 +91,7 @@ class ReportedCase:
     synthetic: bool  # the measured test is a virtual one
     marker_noise: float  # standard deviation of the measured markers, or of the optical system's [m]
     responses: dict  # str to Response; by model
-    differences: xr.Dataset  # xarray.Dataset; from `compare_models`
+    differences: xr.Dataset | None  # from `compare_models`; none while the study runs
     levels: dict = field(default_factory=dict)  # level by sample, where the samples are scaled to some
 
     @property
@@ -241,18 +242,39 @@ def load_content(study, results, only=None):
     )  # fmt: skip
 
 
+def cases_so_far(study, results):
+    """`ReportedCase` by name, of the cases that a model has done, with those models alone; of a study that runs.
+
+    ``study`` and ``results`` as of `load_content`; only envelopes, samples and measured inputs are read.
+    """
+    read = {one.name: {} for one in ANALYSES}
+    for one in ANALYSES:
+        if one.name in ("envelopes", "samples", "inputs"):
+            paths = {key: Path(results, file) for key, file in one.files(study).items()}
+            read[one.name] = {key: one.load(path) for key, path in paths.items() if path.is_file()}
+    done = {case for case, _ in read["envelopes"].keys() & read["samples"].keys()}
+    return {
+        case["name"]: _case(study, read, case["name"], case)
+        for case in study["cases"]
+        if case["name"] in done
+    }
+
+
 def _case(study, read, name, settings):
     named = settings.get("measured")
     responses = {
         model: Response(
-            *(read[kind][name, model] for kind in ("envelopes", "samples", "shown")),
+            envelope=read["envelopes"][name, model],
+            samples=read["samples"][name, model],
+            shown=read["shown"].get((name, model)),
             comparison=read["comparisons"].get((name, model)),
-            sensitivity=read["sensitivities"][name, model],
+            sensitivity=read["sensitivities"].get((name, model)),
             cloud=read["clouds"].get((name, model)),
-            indices=read["indices"][name, model],
+            indices=read["indices"].get((name, model)),
             limits=read["limits"].get((name, model)),
         )
         for model in study["models"]
+        if {(name, model)} <= read["envelopes"].keys() & read["samples"].keys()
     }
     base = campaign = test = None
     marker_noise = markers.NOISE
@@ -272,7 +294,7 @@ def _case(study, read, name, settings):
         synthetic=bool(test.attrs.get("synthetic", 0)) if named else False,
         marker_noise=marker_noise,
         responses=responses,
-        differences=read["differences"][name, None],
+        differences=read["differences"].get((name, None)),
         levels=levels_of(settings, study["ensemble"]["seed"], study["ensemble"]["size"]),
     )
 

@@ -35,7 +35,9 @@ def figures(content):
     ended = count_outcomes(np.concatenate([one.samples["status"] for one in responses]))
     models = {model: one["time_step"] for model, one in content.study["models"].items()}
     runs = Text(_OPENING.runs(len(content.cases), models, sum(ended), ended))
-    return Section("Cases in figures", "figures", (runs, probability_table(content), *failures(content)))
+    return Section(
+        "Cases in figures", "figures", (runs, probability_table(content.stripes), *failures(content))
+    )
 
 
 def failures(content):
@@ -58,10 +60,10 @@ def failures(content):
     return [*([table] if rows else []), Text(_OPENING.numerics(100.0 * residual, 100.0 * capped))]
 
 
-def probability_table(content):
+def probability_table(stripes):
     """Collapse, drift beyond the limit, peak and rotation of the top block of every leaf, with 95 % intervals."""
     rows = []
-    for stripe in content.stripes:
+    for stripe in stripes:
         for (body, marker), (model, response) in product(
             top_markers(stripe.case.structure).items(), stripe.responses.items()
         ):
@@ -76,7 +78,7 @@ def probability_table(content):
                 *(_bounded(top.sel(quantile=q), "peak_rotation", _thousandths) for q in _SHOWN),
             ))  # fmt: skip
     limits = np.hstack(
-        [one.envelope["largest_drift"] for case in content.stripes for one in case.responses.values()]
+        [one.envelope["largest_drift"] for stripe in stripes for one in stripe.responses.values()]
     )
     quantiles = [f"{100 * one:.0f} %" for one in _SHOWN]
     needed = ", ".join(

@@ -36,29 +36,40 @@ def responses(content):
     return Section("Displacement of the blocks", "responses", tuple(blocks))
 
 
+def displacements(case):
+    """Figure of the blocks relative to the slab's marker, in a list; none of a case with levels."""
+    blocks = int((~case.structure.driven).sum())
+    return [] if case.levels else [_figure(case, "slab", _RESULTS.curves(case, len(_drawn(case)), blocks))]
+
+
+def _drawn(case):
+    """Blocks of a figure, from the top row down."""
+    return bodies_by_height(case.structure, face_markers(case.structure), _ROWS)[::-1]
+
+
+def _figure(case, frame, caption):
+    """Displacement of the blocks in a frame."""
+    markers, drawn = face_markers(case.structure), _drawn(case)
+    envelopes = {model: one.envelope for model, one in case.responses.items()}
+    shown = envelopes, case.measured, [markers[body] for body in drawn], drawn, frame, case.synthetic
+    return Figure(caption, svg_of(plot_displacements, *shown))
+
+
 def _response(case):
-    markers, blocks = face_markers(case.structure), int((~case.structure.driven).sum())
-    drawn = bodies_by_height(case.structure, markers, _ROWS)[::-1]
-
-    def figure(frame, caption):
-        envelopes = {model: one.envelope for model, one in case.responses.items()}
-        shown = envelopes, case.measured, [markers[body] for body in drawn], drawn, frame, case.synthetic
-        return Figure(caption, svg_of(plot_displacements, *shown))
-
-    curves = [] if case.levels else [figure("slab", _RESULTS.curves(case, len(drawn), blocks))]
+    markers = face_markers(case.structure)
     tables = [_levels_table(case)] if case.levels else block_tables(case)
     return [
         Heading(case.title, f"response-{case.name}"),
         Text(_RESULTS.case(case)),
         *([] if case.levels else band_remarks(case, markers.values())),
-        *curves,
+        *displacements(case),
         *_moving(case),
         *tables,
         *(table for stripe in case.stripes for table in joints_table(stripe)),
         *(
             []
             if case.measured is None
-            else [figure("inertial", _RESULTS.inertial(case)), coverage_table(case)]
+            else [_figure(case, "inertial", _RESULTS.inertial(case)), coverage_table(case)]
         ),
     ]
 
