@@ -9,7 +9,7 @@ from blockshake.study.report.content import cases_so_far
 from blockshake.study.report.opening_sections import probability_table
 from blockshake.study.report.result_sections import displacements
 
-_WORDS = Words(__name__)
+_OF_STATE = Words(__name__)
 _KEY = "so-far"
 
 
@@ -34,13 +34,13 @@ def write_so_far(study, results, html):
     done = {name: list(case.responses) for name, case in cases.items()}
     left = len(study["cases"]) * len(study["models"]) - sum(map(len, done.values()))
     stripes = [stripe for case in cases.values() for stripe in case.stripes]
-    blocks = [Text(_WORDS.state(done, left)), probability_table(stripes)]
+    blocks = [Text(_OF_STATE.state(done, left)), probability_table(stripes)]
     for case in cases.values():
         blocks += [Heading(case.title, f"so-far-{case.name}"), *displacements(case)]
     title = f"blockshake: {study['name']}, so far"
     section = Section("So far", _KEY, tuple(blocks))
     write_html(html, numbered(Document(title, " ".join(study["description"].split()), sections=(section,))))
-    return _WORDS.line(html, done, left)
+    return _OF_STATE.line(html, done, left)
 
 
 def is_finished(html):
