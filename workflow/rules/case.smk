@@ -11,6 +11,15 @@ wildcard_constraints:
     batch=rf"\d\d\d+-\d\d\d+|{HALF_STEP}",
 
 
+def for_first_picture(wildcards):
+    """Priority of a job: 1 where the first case by the first model needs it."""
+    case, model = wildcards.get("case"), wildcards.get("model")
+    return int(
+        case in (None, next(iter(CASES)))
+        and (model is None or solver_of(model) is solver_of(MODELS[0]))
+    )
+
+
 def by_content(path):
     """Path of a file, one in YAML `ancient`: its contents, and not its time, make a rule with `yaml_contents` run again."""
     return ancient(path) if path.endswith((".yaml", ".yml")) else path

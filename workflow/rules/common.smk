@@ -4,7 +4,6 @@ import contextlib
 import os
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 
 # scripts find the package around the workflow, a checkout's or an installed one, in any environment
 ROOT = Path(workflow.basedir.removesuffix("workflow"))
@@ -124,12 +123,6 @@ def kernels(model):
     return f"results/kernels/{solver_of(model).name}-{source_digest(*kernel_sources(model))}.json"
 
 
-def for_first_picture(wildcards):
-    """Priority of a job: 1 where the study's first picture needs it."""
-    case, model = wildcards.get("case", FIRST.case), wildcards.get("model", FIRST.model)
-    return int(case == FIRST.case and solver_of(model) is solver_of(FIRST.model))
-
-
 FAILURES = Failures()
 
 
@@ -159,8 +152,6 @@ TEMPLATES = sorted(
 STUDY = config["name"]
 MODELS = list(config["models"])
 CASES = {case["name"]: case for case in config["cases"]}
-# the first picture of the study: one case by one model, whose jobs come before all others
-FIRST = SimpleNamespace(case=next(iter(CASES)), model=MODELS[0])
 MEASURED = [name for name, case in CASES.items() if case["measured"]]
 BASELINES = {motion: baseline for _, motion, baseline in CHECKED.named_motions()}
 MOTIONS = {Path(motion).stem: motion for motion in BASELINES}
@@ -172,4 +163,3 @@ wildcard_constraints:
     case="|".join(CASES),
     motion="|".join(MOTIONS),
     digest="[0-9a-f]{12}",
-    stage=r"\d+",

@@ -1,3 +1,7 @@
+wildcard_constraints:
+    stage=r"\d+",
+
+
 rule write_so_far:
     """The study's page while it runs: stage 0 is the first case by the first model, each other one a case by all models.
 
@@ -8,7 +12,7 @@ rule write_so_far:
             "results/{study}/{kind}/{model}/{case}.nc",
             study=wildcards.study,
             kind=["envelopes", "samples"],
-            model=MODELS if int(wildcards.stage) else FIRST.model,
+            model=MODELS if int(wildcards.stage) else MODELS[0],
             case=list(CASES)[max(int(wildcards.stage) - 1, 0)],
         ),
     output:
