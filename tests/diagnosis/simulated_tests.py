@@ -31,6 +31,13 @@ def seen_tests(structure, motions, cause=None, change=None, duration=DURATION, m
     ``model`` has the solver, its parameters and the time step [s]. With ``noise``, `Instruments`, the noise is found
     as a campaign's is; without it is as stated.
     """
+    file, tests = read_tests(structure, motions, cause, change, duration, model, noise)
+    sensors = found_noise(tests, file, Sensors()) if noise else Sensors()
+    return [reconstruct_test(name, readings, file, sensors) for name, readings in tests.items()]
+
+
+def read_tests(structure, motions, cause=None, change=None, duration=DURATION, model=RIGID, noise=None):
+    """`Structure` and readings by name, as of `seen_tests`."""
     path = STRUCTURES / f"{structure}.yaml"
     file, tests = load_structure(path if path.is_file() else structure), {}
     solver, parameters, time_step = model
@@ -47,5 +54,4 @@ def seen_tests(structure, motions, cause=None, change=None, duration=DURATION, m
         readings = observe(run, experiment.structure, experiment.instruments, seed)
         known = [marker.name for marker in file.file.markers]
         tests[name] = without_outliers(readings.sel(marker=known), file)
-    sensors = found_noise(tests, file, Sensors()) if noise else Sensors()
-    return [reconstruct_test(name, readings, file, sensors) for name, readings in tests.items()]
+    return file, tests

@@ -157,7 +157,7 @@ def check_parity(tests, structure, sensors, level=LEVEL):
         return {name: corrected(test, name, structure, faults) for name, test in tests.items()}
 
     tests = without(limited_markers(bodies_with_markers(structure, tests, axes).values(), noise, share))
-    scaled = body_gains(structure, tests, sensors, share)
+    scaled = _whole_gains(structure, tests, sensors, share)
     tests = without(scaled)
     tests = without(marker_exchanges(structure, tests, noise, share))
     bodies = bodies_with_markers(structure, tests, axes)
@@ -216,6 +216,19 @@ def check_parity(tests, structure, sensors, level=LEVEL):
         falls={},
         gaps=gaps,
     )
+
+
+def _whole_gains(structure, tests, sensors, share):
+    """Gains of all markers of a body, unless the rigid fit shows a fault of one marker alone: it moves the fit too."""
+    bodies = bodies_with_markers(structure, tests, sensors.marker_axes)
+    of_body = {marker.name: marker.body for marker in structure.file.markers}
+    whole = []
+    for finding in body_gains(structure, tests, sensors, share):
+        body = bodies.get(of_body[finding.where[0]])
+        faults = marker_faults.check_body(body, sensors.marker_noise, share).findings if body else ()
+        if len({fault.where for fault in faults}) != 1:
+            whole.append(finding)
+    return whole
 
 
 def _looked_at(bodies, tests):

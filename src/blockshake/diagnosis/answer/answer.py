@@ -14,7 +14,7 @@ _MORE_AFTER_SLAB = 10.0  # nats more of a cause in the joints of a slab that has
 _MORE_AFTER_FIRST = 5.0  # nats more of a second cause in the joints
 _SHARE_OF_FIRST = 0.1  # of the first one's gain, in addition
 _MOST_CAUSES = 3
-_LEADING = 4  # causes that are tried with a second one each
+_LEADING = 4  # effects that are tried with a second one each
 COARSENING = 0.05  # share of what it explains that the form of a cause may leave unexplained
 
 
@@ -120,8 +120,8 @@ def find_causes(ranked, needed):
     A cause that ranks before the first one that is no chance, and whose odds over none would do, is an error that this
     structure's own runs show: it becomes a group that is not asserted, and others are compared with it.
 
-    One cause may take up what two made: the first one is the strongest of those that, each with the best one given it,
-    explain as much as any pair does within the odds that tell.
+    One cause may take up what two made: the first one is the strongest of those that, each with the effect that comes
+    next given it, explain as much as any pair does within the odds that tell.
     """
     groups = []
     while len(groups) < _MOST_CAUSES:
@@ -133,9 +133,10 @@ def find_causes(ranked, needed):
         first = next(one for one in rivals if one is strong[0] or one.score > ODDS)
         scores = {rival.cause: rival.score for rival in rivals}
         if first is strong[0] and not known:
-            pairs = _pair_scores(strong[:_LEADING], scores, ranked, needed)
+            pairs = _pair_scores(strong, scores, ranked, needed)
             most = max(pairs.values())
-            first = next(one for one in strong if coarsened(most - pairs[one.cause], most) < ODDS)
+            likely = (one for one in strong if coarsened(most - pairs.get(one.cause, -np.inf), most) < ODDS)
+            first = next(likely)
             scores |= {} if first is strong[0] else pairs
         groups.append(group_of(first, rivals, scores, asserted=first in strong))
     while groups and not groups[-1].asserted:
@@ -143,16 +144,18 @@ def find_causes(ranked, needed):
     return groups
 
 
-def _pair_scores(leading, scores, ranked, needed):
-    """Score of each of some `Alternative` by name, with that of the best weaker cause given it that is no chance.
+def _pair_scores(strong, scores, ranked, needed):
+    """Scores of pairs by the name of the first: of the strongest cause, and of the leading effects of the registry.
 
-    ``scores`` are those of all causes alone.
+    Each is paired with what comes next given it: an effect that is weaker alone, by ``scores``, and no chance.
     """
     pairs = {}
-    for first in leading:
-        further = (one for one in ranked([first]) if one.gain > needed(one.cause, [first]))
-        weaker = (one.score for one in further if scores.get(one.cause, 0.0) <= first.score)
-        pairs[first.cause] = first.score + next(weaker, 0.0)
+    for first in dict.fromkeys([strong[0], *[one for one in strong if one.cause not in FORMS][:_LEADING]]):
+        seconds = ranked([first])
+        second = next((one for one in seconds if one.score > ODDS), None)
+        counts = second and second.gain > needed(second.cause, [first]) and second.cause not in FORMS
+        weaker = counts and scores.get(second.cause, 0.0) <= first.score
+        pairs[first.cause] = first.score + (second.score if weaker else 0.0)
     return pairs
 
 
