@@ -172,6 +172,23 @@ def test_no_docstring_starts_with_what(folder):
     assert found == []
 
 
+NOT_YET = ("diagnosis", "forces", "parity")  # rooms whose digests a record rests on
+
+
+def test_no_sentence_of_a_docstring_starts_with_of():
+    """Descriptions begin with their noun: of what is left open is read twice."""
+    found = []
+    for path, tree in parsed_modules():
+        if path.relative_to(PACKAGE.parent).parts[1] in NOT_YET:
+            continue
+        for node in ast.walk(tree):
+            if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)):
+                text = ast.get_docstring(node) or ""
+                blocks = re.findall(r"(?:\A|\n\n|\n(?:\w.* : .*|-+)\n)\s*((?:Of|Those of) .*)", text)
+                found += [f"{path.name}: {words}" for words in blocks]
+    assert found == []
+
+
 def test_every_module_of_tests_has_a_name_of_its_own():
     """Pytest imports them by their names alone."""
     names = [path.name for path in (ROOT / "tests").rglob("test_*.py")]

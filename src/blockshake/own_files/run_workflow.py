@@ -55,7 +55,7 @@ class Listener:
     Parameters
     ----------
     name : str
-        Of the study or the campaign.
+        Name of the study or the campaign.
     say : callable
         Gets lines of progress.
     """

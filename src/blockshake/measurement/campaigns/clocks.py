@@ -136,7 +136,7 @@ def simulation_start(time):
     Parameters
     ----------
     time : float64 array, shape (n_times,)
-        Of the markers, from the start of the command on [s].
+        Times of the markers, from the start of the command on [s].
 
     Returns
     -------

@@ -92,7 +92,7 @@ def command_target(test, slab, commanded):
 
     Notes
     -----
-    Of a slab that moves backwards or along another axis, the start is searched for along that axis.
+    The start of a slab that moves backwards or along another axis is searched for along that axis.
     """
     time, zero = test["time"].to_numpy(), 0.0
     if not test.attrs["follows"]:

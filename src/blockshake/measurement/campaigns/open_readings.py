@@ -14,7 +14,7 @@ from blockshake.measurement.motion.fall import find_fall, until_fall
 class OpenReadings(NamedTuple):
     """Tests of a campaign by name as their files have them, until a block falls, and each `Fall` by the test's name.
 
-    Of tests with the same readings only the first is here.
+    Tests with the same readings count once, the first of them.
     """
 
     structure: Structure

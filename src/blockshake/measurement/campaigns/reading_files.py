@@ -44,7 +44,7 @@ def read_netcdf(path):
 
 
 def read_variables(path, variables):
-    """Those of some variables that a netCDF file has, float64 with float64 times.
+    """Variables that a netCDF file has, of those named, float64 with float64 times.
 
     Parameters
     ----------

@@ -91,7 +91,7 @@ def carried_remarks(time, readings, names, slab, noise):
     time : float64 array, shape (n_times,)
         [s]
     readings : float64 array, shape (n_times, n_markers, 3)
-        Of markers on blocks [m]; gaps are NaN, as is a direction that a marker does not measure.
+        Displacements of markers on blocks [m]; gaps are NaN, as is a direction that a marker does not measure.
     names : list of str, length n_markers
     slab : float64 array, shape (n_times, 3)
         Mean displacement of the slab's markers [m].

@@ -54,7 +54,7 @@ def accelerometer_noise(readings):
     Parameters
     ----------
     readings : float64 array, shape (n_times, n_channels)
-        Of the quiet start [m/s2]; gaps are NaN.
+        Accelerations of the quiet start [m/s2]; gaps are NaN.
 
     Returns
     -------

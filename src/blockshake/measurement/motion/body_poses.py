@@ -201,12 +201,12 @@ def fit_poses(points, readings, marker_noise):
     Returns
     -------
     position : float64 array, shape (n_times, 3)
-        Of the mass centre, inertial frame [m]; NaN, as all else, where fewer than three markers were read, or markers
-        on a line alone.
+        Place of the mass centre, inertial frame [m]; NaN, as all else, where fewer than three markers were read, or
+        markers on a line alone.
     rotation : float64 array, shape (n_times, 3, 3)
         Body to world.
     covariance : float64 array, shape (n_times, 6, 6)
-        Of position [m] and small rotation, world frame [rad].
+        Covariance of position [m] and small rotation, world frame [rad].
 
     Notes
     -----

@@ -19,7 +19,7 @@ def joint_histories(test, structure, sensors):
     structure : Structure
         The campaign's, for a simulated run too, whatever was varied in it.
     sensors : Sensors
-        Of the measured test, for a simulated one too.
+        Sensors of the measured test, for a simulated one too.
 
     Returns
     -------

@@ -69,7 +69,7 @@ def joint_coordinates(structure, position, rotation):
     ----------
     structure : Structure
     position : float64 array, shape (n_times, n_bodies, 3)
-        Of the mass centres, inertial frame [m].
+        Places of the mass centres, inertial frame [m].
     rotation : float64 array, shape (n_times, n_bodies, 3, 3)
         Body to world.
 

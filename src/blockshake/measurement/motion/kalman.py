@@ -51,7 +51,7 @@ def smooth(time, marker, marker_variance, reading, reading_variance, jerk_densit
     marker, reading : float64 arrays, shape (n_times,)
         Displacement [m] and acceleration with a constant offset [m/s2]; NaN where there is none.
     marker_variance, reading_variance : float
-        Of independent errors [m2, m2/s4].
+        Variances of independent errors [m2, m2/s4].
     jerk_density : float
         Spectral density of the white jerk that drives the acceleration [m2/s5].
     mean : float64 array, shape (n_times, N_STATES)

@@ -101,7 +101,7 @@ def observe(run, structure, instruments, seed):
         The run.
     instruments : Instruments
     seed : int
-        Of noise, offsets and dropouts: each has a stream of its own, so that one fault more leaves the
+        Seed of noise, offsets and dropouts: each has a stream of its own, so that one fault more leaves the
         others' numbers as they are.
 
     Returns

@@ -35,7 +35,7 @@ def transducer_lengths(structure, position, orientation):
     ----------
     structure : Structure
     position : float64 array, shape (n_times, n_bodies, 3)
-        Of the mass centres, inertial frame [m].
+        Places of the mass centres, inertial frame [m].
     orientation : float64 array, shape (n_times, n_bodies, 4)
         Unit quaternions (w, x, y, z), body to world.
 
