@@ -1,5 +1,6 @@
 """The plans of the cases, and the places of their campaigns, truths and verdicts."""
 
+import re
 from collections import Counter
 from pathlib import Path
 from typing import Annotated, Literal
@@ -65,17 +66,18 @@ class Plan(Strict):
     part: str = Field(WHOLE, description="of the cases of the file")
 
     def chosen(self, part=WHOLE, laboratory=None):
-        """The plan with a part of its cases, such as ``1/4``: of every stratum each fourth; or of one laboratory."""
-        try:
-            count, every = map(int, part.split("/"))
-        except ValueError:
-            count = every = 0
-        if not 0 < count <= every:
-            raise InputError("share", part, "expected a share of the cases such as 1/4")
+        """The plan with a part of its cases, or of one laboratory.
+
+        ``1/4`` is of every stratum the first of each four cases, ``3/4`` the first three, ``2-2/4`` the second.
+        """
+        match = re.fullmatch(r"(?:(\d+)-)?(\d+)/(\d+)", part)
+        first, last, every = (int(number or 1) for number in match.groups()) if match else (1, 0, 0)
+        if not 0 < first <= last <= every:
+            raise InputError("share", part, "expected a share of the cases such as 1/4, or 2-2/4")
         met, cases = Counter(), []
         for case in self.cases:
             if laboratory in (None, case.laboratory):
-                if met[case.stratum] % every < count:
+                if first <= met[case.stratum] % every + 1 <= last:
                     cases.append(case)
                 met[case.stratum] += 1
         return self.model_copy(update={"cases": tuple(cases), "part": part})

@@ -1,8 +1,8 @@
 """Track record of the diagnosis: make every case of a plan, diagnose it as a user would, and score it.
 
 ``python hidden_effects/measure_track_record.py --output results/hidden-effects --cores 2`` goes on where it was cut
-short. Every step is a line of ``log.jsonl`` in that folder. ``--share 1/4`` takes a fourth of the cases, ``--laboratory
-mujoco`` those of one laboratory, and ``--make-only`` leaves the verdicts to others.
+short. Every step is a line of ``log.jsonl`` in that folder. ``--share 1/4`` takes a fourth of the cases, ``2-2/4`` the
+second of each four, ``--laboratory mujoco`` those of one laboratory, and ``--make-only`` leaves the verdicts to others.
 """
 
 import argparse

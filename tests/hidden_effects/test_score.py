@@ -163,6 +163,11 @@ def test_a_part_of_the_list_keeps_its_strata():
     whole, part = (Counter(case.stratum for case in PLAN.chosen(share).cases) for share in ("1/1", "1/4"))
     assert whole.keys() == part.keys()
     assert all(part[one] == -(-count // 4) for one, count in whole.items())
+    fourths = [PLAN.chosen(f"{number}-{number}/4").cases for number in range(1, 5)]
+    assert fourths[0] == PLAN.chosen("1/4").cases
+    assert sorted(case.name for fourth in fourths for case in fourth) == sorted(
+        case.name for case in PLAN.cases
+    )
     assert {case.laboratory for case in PLAN.chosen(laboratory="mujoco").cases} == {"mujoco"}
     with pytest.raises(InputError, match="1/4"):
         PLAN.chosen("a quarter")

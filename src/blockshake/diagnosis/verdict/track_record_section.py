@@ -4,7 +4,7 @@ from blockshake.diagnosis.verdict.track_record import WHOLE, procedure_digest
 from blockshake.pages.blocks import Items, Section, Text
 from blockshake.pages.words import Words
 
-PARTS = {WHOLE: "", "1/4": "a quarter", "1/2": "half", "3/4": "three quarters"}
+PARTS = {WHOLE: "", "1/4": "a quarter", "2-2/4": "a quarter", "1/2": "half", "3/4": "three quarters"}
 _RECORD = Words(__name__)
 _SHOWN = ("false_alarms", "truth_in_set_seen")
 
