@@ -35,6 +35,8 @@ ELSEWHERE = (
     "bodies.*.on",
     "bodies.*.offset",
     "tests.*.outcome",
+    "time.rate",
+    "accelerometers.time.rate",
     "cases.*.intensity.measure",
     "cases.*.intensity.period",
     "cases.*.intensity.levels",

@@ -200,7 +200,7 @@ BAD = {
     "text among numbers": (_set(9, 2, "over"), [], "v1.csv: line 11, Weg 1: expected a number with a decimal comma"),
     "a point for thousands": (_set(9, 2, "1.012"), [], "line 11, Weg 1: expected a number with a decimal comma"),
     "a code for none": (_set(9, 2, "-9999"), [], "line 11, Weg 1: expected a reading; '-9999' looks like a code"),
-    "a cell too many": (_set(9, 2, "57;3"), [], "v1.csv: line 11: expected at most 4 cells, found 5"),
+    "a cell too many": (_set(9, 2, "57;3"), [], "v1.csv: line 11: expected at most 4 cells as in line 1, found 5"),
     "a gap of the clock": (
         _without(200, 230), [],
         "--fill-gaps: ... v1.csv: line 202, Zeit: expected an even clock; 0.31 s after 1.99 s",

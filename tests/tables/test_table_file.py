@@ -101,7 +101,7 @@ def test_sheets_and_files_that_hold_no_table(tmp_path):
     [
         ("t,b,\n0,1\n", "column 'a': expected this column once; there are t, b in the header"),
         ("t-b\n0-1\n", "separator: column 'a': expected this column once; there are t-b in the header"),
-        ("t,a,a\n0,1,1\n", "column 'a': expected this column once; it stands twice"),
+        ("t,a,a\n0,1,1\n", "column 'a': expected this column once; it stands in the columns 2, 3"),
         ("t,a\n0,1\n1,far\n", "line 3, a: expected a number with a decimal point, or nothing, not 'far'"),
         ("t;a\n0;1,5\n", "decimal: line 2, a: expected a number with a decimal point, or nothing, not '1,5'"),
         ("t;a\ns;mm\n0;1\n", "data: line 2, a: expected a number"),

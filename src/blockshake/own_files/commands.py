@@ -93,7 +93,7 @@ def _add_layout(command):
         ("--time-unit UNIT", "s (default), ms or min"),
         ("--separator CHARACTER", "between cells (default: as the header shows)"),
         ("--decimal SIGN", "decimal sign, . (default) or ,"),
-        ("--header LINE", "of the columns' names (default 1)"),
+        ("--header LINES", "of the columns' names, such as 1 (default) or 4,6,7"),
         ("--data LINE", "first one of numbers (default: below the names)"),
     )
 

@@ -27,7 +27,14 @@ from blockshake.measurement.checks.places import place_remarks
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
 from blockshake.measurement.sensors.markers import marker_position, mean_read, on_driven
 from blockshake.measurement.sensors.transducers import transducer_names
-from blockshake.own_files.import_columns import by_key, check_once, columns_of, rest_of
+from blockshake.own_files.import_columns import (
+    at_times,
+    by_key,
+    check_once,
+    columns_of,
+    recorder_map,
+    rest_of,
+)
 from blockshake.own_files.import_map import ImportMap, load_map
 from blockshake.own_files.import_poses import check_poses, filmed_body, is_pose, markers_of_poses, posed_table
 from blockshake.validation import validated
@@ -159,23 +166,26 @@ def _read_readings(test, import_map, structure, where):
     posed = [key for key in markers if is_pose(key, structure)]
     markers = [key for key in markers if key not in posed]
     source = test.accelerometers or test.file
-    for names in (
-        ([*markers, *posed], [*channels, *transducers]) if source != test.file else (import_map.columns,)
-    ):
-        check_once(names, import_map, where)
-    time, read, lost, starts, filmed = None, {}, "", {}, {}
+    apart = [key for key in markers if import_map.columns[key].recorder]
+    if len(apart) == len(markers) + len(posed) or (apart and not test.accelerometers):
+        wrong = "expected a file accelerometers, and other markers in the file of the test"
+        raise InputError(where, f"columns.{apart[0]}.recorder", wrong)
+    if source == test.file:
+        check_once(import_map.columns, import_map, where)
+    else:
+        check_once([key for key in (*markers, *posed) if key not in apart], import_map, where)
+        check_once([*apart, *channels, *transducers], recorder_map(import_map), where)
+    time, read, lost, starts, filmed, remarks = None, {}, "", {}, {}, []
     if markers:
-        time, read, lost, starts = _displacements(test.file, markers, import_map, where)
+        time, read, lost, starts, remarks = _displacements(test, markers, posed, import_map, where)
     for body in dict.fromkeys(key.rpartition(".")[0] for key in posed):
-        filmed[body] = filmed_body(test.file, body, posed, import_map, structure, where)
-        time, own = (
-            filmed[body].time,
-            markers_of_poses(filmed[body], test.file, body, import_map, structure, where),
-        )
+        filmed[body] = poses = filmed_body(test.file, body, posed, import_map, structure, where)
+        time, own = poses.time, markers_of_poses(poses, test.file, body, import_map, structure, where)
         for name in own.keys() & read.keys():
             wrong = f"expected none; {name} is read from the poses of {body}"
             raise InputError(where, f"columns.{name}.x", wrong)
         read |= own
+        remarks += poses.remarks
     read = {name: values for name, values in read.items() if np.isfinite(values).any()}
     if not read:
         raise InputError(where, "columns", f"expected readings of a marker in {test.file}; all are missing")
@@ -185,7 +195,7 @@ def _read_readings(test, import_map, structure, where):
         check_poses(filmed, slab, import_map, structure, where)
     places = marker_position(structure, structure.position, structure.orientation)
     nominal = {marker.name: place for marker, place in zip(structure.file.markers, places, strict=True)}
-    remarks = _places(starts, nominal)
+    remarks += _places(starts, nominal)
     centroids = dict(zip(structure.body_names, structure.centroid, strict=True))
     remarks += _places({body: poses.position[:FIRST_READINGS] for body, poses in filmed.items()}, centroids)
     variables = {"marker_displacement": (("time", "marker", "axis"), values, {"units": "m"})}
@@ -196,7 +206,8 @@ def _read_readings(test, import_map, structure, where):
     ):
         if not sensors:
             continue
-        time_acc, read = columns_of(source, sensors, import_map, kind, where)
+        time_acc, read, more = columns_of(source, sensors, import_map, kind, where, source != test.file)
+        remarks += more
         if kind == "displacement":
             for column, key in zip(read.T, sensors, strict=True):
                 column -= rest_of(time_acc, column, import_map, where, f"{source}: {key}")
@@ -208,14 +219,27 @@ def _read_readings(test, import_map, structure, where):
     return xr.Dataset(variables, coordinates, {"lost_markers": lost} if lost else {}), remarks
 
 
-def _displacements(source, keys, import_map, where):
-    """Times, displacements (n_times, 3) [m] by marker, from its own columns, a line on each marker that was lost, and
-    the first readings (n, 3) by marker.
+def _displacements(test, keys, posed, import_map, where):
+    """Times, displacements (n_times, 3) [m] by marker, from its own columns, a line on each marker that was lost,
+    the first readings (n, 3) by marker, and remarks.
 
     Displacements are NaN along axes without a column, and where a marker was lost.
     """
-    time, readings = columns_of(source, keys, import_map, "displacement", where)
-    starts = {}
+    source, starts = test.file, {}
+    own = [key for key in keys if not import_map.columns[key].recorder]
+    time, readings, remarks = columns_of(source, own or posed[:1], import_map, "displacement", where)
+    columns = dict(zip(own, readings.T, strict=False))
+    if apart := [key for key in keys if key not in own]:
+        at, more, said = columns_of(
+            test.accelerometers, apart, import_map, "displacement", where, recorder=True
+        )
+        columns |= {key: at_times(time, at, values)[0] for key, values in zip(apart, more.T, strict=True)}
+        if not any(np.isfinite(columns[key]).any() for key in apart):
+            theirs, own = (f"{clock[0]:.6g} to {clock[-1]:.6g} s" for clock in (time, at))
+            wrong = f"expected the clock of the others, {theirs}, not {own}"
+            raise InputError(where, f"columns.{apart[0]}.recorder", wrong)
+        remarks += [*said, f"{', '.join(apart)} of the recorder: both clocks are taken to have the same zero"]
+    readings = np.column_stack([columns[key] for key in keys])
     zeros, found = _zeros_of_lost(keys, readings), {}
     readings[zeros] = np.nan
     lost = {key.rpartition(".")[0]: rows for key, rows in zip(keys, zeros.T, strict=True) if rows.any()}
@@ -234,6 +258,7 @@ def _displacements(source, keys, import_map, where):
         found,
         "\n".join(f"{name}: {lost_words(rows, time - time[0])}" for name, rows in lost.items()),
         starts,
+        remarks,
     )
 
 

@@ -1,15 +1,26 @@
 """Columns of a table as a map of an import names them: times and readings in SI."""
 
 import contextlib
+from typing import NamedTuple
 
 import numpy as np
 
 from blockshake.dynamics.records.times import check_increase
 from blockshake.errors import InputError
-from blockshake.measurement.campaigns.clocks import missing_rows
+from blockshake.measurement.campaigns.clocks import LACKING, missing_rows
 from blockshake.measurement.campaigns.faulty_readings import stuck
 from blockshake.tables.table_file import TableLayout, read_table
 from blockshake.tables.units import unit_size
+
+_SAME_TIME = 0.01  # of a step, within which two times are one
+
+
+class TimedColumns(NamedTuple):
+    """Columns of a table in SI."""
+
+    time: np.ndarray  # float64 (n_times,) [s]
+    values: np.ndarray  # float64 (n_times, n_columns); NaN in gaps
+    remarks: list
 
 
 @contextlib.contextmanager
@@ -40,34 +51,110 @@ def check_once(names, import_map, where):
         column = import_map.columns[name].column
         other = taken.setdefault(column, name)
         if other != name:
-            raise InputError(where, f"columns.{name}", f"expected a column of its own; '{column}' is {other}")
+            wrong = f"expected a column of its own; '{column}' is {other}; of several of one name a number names one"
+            raise InputError(where, f"columns.{name}", wrong)
 
 
-def columns_of(source, names, import_map, kind, where):
-    """Times (n_times,) and readings (n_times, n_names) of a table, in SI."""
+def recorder_map(import_map):
+    """The map as it holds for the files of accelerometers."""
+    stated = {key: value for key, value in import_map.accelerometers if value is not None}
+    return import_map.model_copy(update=stated)
+
+
+@contextlib.contextmanager
+def _keys_of_recorder(import_map, where, recorder):
+    """Faults of the files of accelerometers name the keys that hold for these."""
+    try:
+        yield
+    except InputError as error:
+        key = error.key.partition(".")[0]
+        if not recorder or error.where != str(where) or getattr(import_map.accelerometers, key, None) is None:
+            raise
+        raise InputError(where, f"accelerometers.{error.key}", error.expected) from None
+
+
+def columns_of(source, names, import_map, kind, where, recorder=False):
+    """`TimedColumns` of the readings ``names`` of a table of markers, or of a recorder."""
+    with _keys_of_recorder(import_map, where, recorder):
+        return _columns_of(source, names, recorder_map(import_map) if recorder else import_map, kind, where)
+
+
+def _columns_of(source, names, import_map, kind, where):
     with by_key(import_map, where, "time"):
         table = read_table(source, import_map.layout)
-        time = _clock(table, import_map, where)
-    columns = []
+    read, clocks = {}, {}
     for name in names:
         column = import_map.columns[name]
         unit, key = column.unit or getattr(import_map, f"{kind}_unit"), f"columns.{name}"
         if unit is None:
             raise InputError(where, f"{kind}_unit", f"missing key; {name} needs it")
         size = unit_size(kind, unit, where, f"{key}.unit" if column.unit else f"{kind}_unit")
+        entry, key_of_time = import_map.time, "time"
+        if column.time is not None:
+            entry, key_of_time = entry.model_copy(update={"column": column.time}), f"{key}.time"
         with by_key(import_map, where, key):
-            read = table.column(column.column, -size if column.reversed else size, kind)
-        if np.isnan(read).all() and len(import_map.tests) == 1:
+            place = table.place(column.column)
+        with by_key(import_map, where, key_of_time):
+            at = None if entry.column is None else table.place(entry.column, place)
+            if at not in clocks:
+                clocks[at] = _clock(table, entry, at, import_map, where)
+        with by_key(import_map, where, key):
+            values = table.column(column.column, -size if column.reversed else size, kind)
+        if np.isnan(values).all() and len(import_map.tests) == 1:
             wrong = f"expected readings in '{column.column}' of {table.source}; all are missing"
             raise InputError(where, key, wrong)
-        columns.append(read + 0.0)  # no minus zero
-    return time, np.column_stack(columns)
+        late = np.flatnonzero(np.isfinite(values[len(clocks[at]) :]))
+        if late.size:
+            raise table.fault(table.lines[len(clocks[at]) + late[0]], entry.column, "expected a time")
+        read[name] = (clocks[at], values[: len(clocks[at])] + 0.0)  # no minus zero
+    clock, remarks = max(clocks.values(), key=len), []
+    for name, (time, values) in read.items():
+        if time is not clock:
+            values, apart = at_times(clock, time, values)
+            read[name] = (clock, values)
+            remarks += [f"{name}: read between its own times, up to {apart:.2g} s off the others'"] * (
+                apart > 0.0
+            )
+    return TimedColumns(clock, np.column_stack([values for _, values in read.values()]), remarks)
 
 
-def _clock(table, import_map, where):
-    """Times that increase [s]."""
-    name = import_map.time.column
-    time = table.times(name, unit_size("time", import_map.time.unit or "s", where, "time.unit"))
+def at_times(clock, time, values):
+    """Readings (n_times,) at the times of another clock, and how far these are off at most [s].
+
+    Between two readings on a line; NaN where their clock has none within one and a half steps. Times within a
+    hundredth of a step are the same.
+    """
+    step = np.median(np.diff(time))
+    after = np.clip(np.searchsorted(time, clock), 1, len(time) - 1)
+    nearest = np.where(clock - time[after - 1] < time[after] - clock, after - 1, after)
+    off = np.abs(time[nearest] - clock)
+    same = off <= _SAME_TIME * step
+    inside = (clock >= time[0]) & (clock <= time[-1]) & (time[after] - time[after - 1] <= LACKING * step)
+    share = (clock - time[after - 1]) / (time[after] - time[after - 1])
+    between = values[after - 1] + share * (values[after] - values[after - 1])
+    read = np.where(same, values[nearest], np.where(inside, between, np.nan))
+    apart = off[inside & ~same]
+    return read, float(apart.max()) if apart.size else 0.0
+
+
+def _clock(table, entry, place, import_map, where):
+    """Times that increase [s], of a column by its place, or of frames at a rate."""
+    if place is None:
+        return np.arange(len(table.rows)) / entry.rate
+    name = table.names[place] if table.names.count(table.names[place]) == 1 else str(place + 1)
+    if entry.rate is None:
+        time = table.times(name, unit_size("time", entry.unit or "s", where, "time.unit"))
+    else:
+        time = table.column(name, kind=None)
+        known = np.isfinite(time)
+        if (time[known] % 1.0).any():
+            row = int(np.argmax(known & (time % 1.0 != 0.0)))
+            raise table.fault(
+                table.lines[row], name, f"expected a frame's number, not {time[row]:g}; with times no rate"
+            )
+        time = time / entry.rate
+    if np.isfinite(time).any():  # others may have more rows
+        time = time[: int(np.flatnonzero(np.isfinite(time))[-1]) + 1]
     if np.isnan(time).any():
         raise table.fault(table.lines[int(np.argmax(np.isnan(time)))], name, "expected a time")
     check_increase(time, table.lines, table.source, name)

@@ -3,13 +3,13 @@
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, model_validator
 
 from blockshake.files import load_yaml, shipped_names
 from blockshake.measurement.campaigns.campaign import CommandedTest, Sensors
 from blockshake.paths import file_below
 from blockshake.tables.table_file import TableLayout
-from blockshake.validation import NotNegative, Strict, validated
+from blockshake.validation import NotNegative, Positive, Strict, validated
 
 
 class NamedColumn(Strict):
@@ -19,10 +19,35 @@ class NamedColumn(Strict):
     unit: str | None = Field(None, description="by default that of all columns of its kind")
 
 
+class RowTimes(Strict):
+    """Times of the rows: a column, or frames at a rate."""
+
+    column: str | None = Field(
+        None,
+        description="its name or number; of several of one name each reading has the last one before it; with a rate "
+        "it holds frame numbers, and may be left out",
+    )
+    unit: str | None = Field(None, description="s by default")
+    rate: Positive | None = Field(None, description="frames a second [Hz]")
+
+    @model_validator(mode="after")
+    def _known(self):
+        if self.rate is not None and self.unit is not None:
+            raise ValueError("expected a unit or a rate, not both")
+        if self.rate is None and self.column is None:
+            raise ValueError("expected a column of times, or the rate of the frames")
+        return self
+
+
 class Reading(NamedColumn):
     """A column of readings."""
 
     reversed: bool = Field(False, description="positive readings are along the negative axis")
+    time: str | None = Field(None, description="column of its times, where it has one of its own")
+    recorder: bool = Field(
+        False,
+        description="stands in the file accelerometers, though a marker: read at the times of the others, in between",
+    )
 
 
 def _entry(given):
@@ -30,8 +55,16 @@ def _entry(given):
     return {"column": str(given)} if isinstance(given, (str, int)) else given
 
 
-TimeEntry = Annotated[NamedColumn, BeforeValidator(_entry, json_schema_input_type=NamedColumn | str | int)]
+TimeEntry = Annotated[RowTimes, BeforeValidator(_entry, json_schema_input_type=RowTimes | str | int)]
 ReadingEntry = Annotated[Reading, BeforeValidator(_entry, json_schema_input_type=Reading | str | int)]
+
+
+class Recorder(Strict):
+    """How the files accelerometers of the tests are written, as far as they differ from the others."""
+
+    layout: TableLayout | None = Field(None, description="by default that of the others, as are all")
+    time: TimeEntry | None = Field(None, description="as of the others")
+    displacement_unit: str | None = Field(None, description="of transducers, and of markers in these files")
 
 
 class ImportedTest(CommandedTest):
@@ -52,6 +85,9 @@ class ImportMap(Strict):
     sensors: Sensors = Field(Sensors(), description="standard deviations of the readings")
     layout: TableLayout = Field(TableLayout(), description="how the files are written")
     time: TimeEntry = Field(description="a column's name, or an entry; in s by default")
+    accelerometers: Recorder = Field(
+        Recorder(), description="how the files accelerometers are written, where otherwise"
+    )
     displacement_unit: str = Field(description="m, cm, mm or um")
     acceleration_unit: str | None = Field(
         None, description="m/s2, cm/s2 or g; needed where there are channels"

@@ -25,6 +25,7 @@ class FilmedBody(NamedTuple):
     time: np.ndarray  # float64 (n_times,) [s]
     position: np.ndarray  # float64 (n_times, 3); centroid, in the file's origin [m]
     rotation: np.ndarray  # float64 (n_times, 3, 3); body to world
+    remarks: list
 
 
 def is_pose(key, structure):
@@ -39,10 +40,10 @@ def filmed_body(source, body, posed, import_map, structure, where):
     if not any(marker.body == body for marker in structure.file.markers):
         raise InputError(where, f"columns.{body}.x", f"expected markers of {body} in the structure")
     keys = [key for key in posed if key.startswith(f"{body}.")]
-    time, columns = _pose_columns(source, body, keys, import_map, where)
+    time, columns, remarks = _pose_columns(source, body, keys, import_map, where)
     with by_key(import_map, where):
         position, rotation, _ = poses_of_columns(columns, source, body)
-    return FilmedBody(time, position, rotation)
+    return FilmedBody(time, position, rotation, remarks)
 
 
 def markers_of_poses(filmed, source, body, import_map, structure, where):
@@ -157,23 +158,24 @@ def _check_start(body, poses, import_map, structure, where):
 
 
 def _pose_columns(source, body, keys, import_map, where):
-    """Times, and columns by key of a body's pose, in m and rad."""
+    """Times, columns by key of a body's pose, in m and rad, and remarks."""
     places = [f"{body}.{axis}" for axis in AXES]
     turns = [f"{body}.{ANGLE}", *(f"{body}.{part}" for part in _TURNS)]
     for key in keys:
         if key in turns[1:] and (import_map.columns[key].unit or import_map.rotation_unit != "rad"):
             raise InputError(where, f"columns.{key}", "expected a quaternion's column without unit")
     _check_frame(body, keys, import_map, where)
-    columns = {}
+    columns, remarks = {}, []
     for names, kind in ((places, "displacement"), (turns, "rotation")):
         mapped = [name for name in names if name in keys]
         if not mapped:
             raise InputError(where, "columns", f"expected a column of {body} among {', '.join(names)}")
-        time, values = columns_of(source, mapped, import_map, kind, where)
+        time, values, more = columns_of(source, mapped, import_map, kind, where)
         columns |= dict(zip(mapped, values.T, strict=True))
+        remarks += more
     if import_map.quaternion != _QUATERNIONS[0]:
         columns |= {key: -columns[key] for key in turns[2:] if key in columns}
-    return time, columns
+    return time, columns, remarks
 
 
 def _check_frame(body, keys, import_map, where):
@@ -221,5 +223,5 @@ def posed_table(test, import_map, structure, where):
         if key not in known:
             raise InputError(where, f"columns.{key}", f"expected one of {', '.join(known)}")
     check_once(import_map.columns, import_map, where)
-    time, columns = _pose_columns(test.file, body, list(import_map.columns), import_map, where)
+    time, columns, _ = _pose_columns(test.file, body, list(import_map.columns), import_map, where)
     return pd.DataFrame({"time_s": time, **columns}).to_csv(index=False)

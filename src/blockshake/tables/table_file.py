@@ -6,10 +6,10 @@ import re
 import zipfile
 from decimal import Decimal
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from blockshake.errors import InputError
 from blockshake.files import read_bytes, read_foreign_text
@@ -22,6 +22,8 @@ GAPS = ("", "nan", "#n/a", "#nv")  # the last two as spreadsheets write them, in
 WORKBOOK = (".xlsx", ".xlsm")
 _MOST_BYTES, _MOST_CELLS = 5e8, 2e7  # a workbook of a few kilobytes may claim any number of them
 _MOST_NAMES = 20  # columns that an error lists
+_RUN = 3  # rows of numbers on end, where a table begins
+_MOST_HEADERS = 4  # lines of names that an error lists
 SIGNS = {".": "point", ",": "comma"}
 # 14:03:21,250 or 2:03:21 PM, behind any date; `datetime` objects of a workbook print so
 _CLOCK = re.compile(
@@ -31,15 +33,34 @@ _CLOCK = re.compile(
 _DAY = 86400  # s
 
 
+def _lines(given):
+    """Numbers of lines, from one number, several, or text between commas as an option has it."""
+    if isinstance(given, str):
+        return [part.strip() for part in given.split(",")]
+    return given if isinstance(given, (list, tuple)) else [given]
+
+
+Lines = Annotated[
+    tuple[Annotated[int, Field(ge=1)], ...],
+    BeforeValidator(_lines, json_schema_input_type=int | list[int]),
+    Field(min_length=1),
+]
+
+
 class TableLayout(Strict):
     """How a table is written."""
 
     separator: str | None = Field(None, description="between cells; by default the one that the header shows")
     decimal: Literal[".", ","] = Field(".", description="decimal sign")
-    header: int = Field(1, ge=1, description="line of the columns' names, from 1")
+    header: Lines = Field(
+        (1,),
+        description="line of the columns' names, from 1, or several whose cells make a name together, with a blank "
+        "between: a cell of all but the last also stands over the empty ones at its right",
+    )
     data: int | None = Field(
         None, ge=1, description="first line of numbers; by default the one below the names"
     )
+    last: int | None = Field(None, ge=1, description="last line of numbers; by default that of the file")
 
 
 class CellTable(NamedTuple):
@@ -51,6 +72,7 @@ class CellTable(NamedTuple):
     lines: list  # of every row in the file, from 1
     rows: list
     decimal: str
+    taken: str  # where names and numbers were taken from, and where numbers begin, in words
 
     def column(self, name, size=Decimal(1), kind=None):
         """Numbers of a column times the size of their unit, float64 (n_rows,); NaN for an empty cell.
@@ -84,12 +106,37 @@ class CellTable(NamedTuple):
             raise InputError(self.source, f"column '{name}'", "expected numbers of usual size")
         return values
 
-    def times(self, name, size=Decimal(1)):
+    def place(self, name, before=None):
+        """Index of a column: the only one of a name, the last one of it before another column, or by number from 1.
+
+        Raises
+        ------
+        InputError
+            No such column, or several.
+        """
+        places = [place for place, one in enumerate(self.names) if one == name]
+        left = [place for place in places if before is not None and place < before]
+        if len(places) == 1 or left:
+            return (left or places)[-1]
+        if not places and name.isascii() and name.isdigit() and 0 < int(name) <= len(self.names):
+            return int(name) - 1
+        others = f"there are {', '.join(filter(None, self.names[:_MOST_NAMES]))} in the header"
+        if places:
+            numbers = ", ".join(str(place + 1) for place in places[:_MOST_NAMES])
+            others = f"it stands in the columns {numbers}, and such a number names one"
+        wrong, key = f"expected this column once; {others}; {self.taken}", f"column '{name}'"
+        # where there is one alone, another sign separates
+        key, wrong = ("separator", f"{key}: {wrong}") if len(self.names) == 1 else (key, wrong)
+        raise InputError(self.source, key, wrong)
+
+    def times(self, name, size=Decimal(1), before=None):
         """Times of a column, float64 (n_rows,) [s], as of `column`; clocks of the day have no unit.
 
-        Clocks count from a midnight. The next day begins where the date changes or, without dates, where the clock
-        falls by more than half a day.
+        Among several columns of this name it is the last one before the place ``before``. Clocks count from a midnight.
+        The next day begins where the date changes or, without dates, where the clock falls by more than half a day.
         """
+        if before is not None:
+            name = str(self.place(name, before) + 1) if self.names.count(name) > 1 else name
         cells = self._cells(name)
         clocks = [_CLOCK.fullmatch(str(cell).strip()) for cell in cells]
         if not any(clocks):
@@ -109,18 +156,13 @@ class CellTable(NamedTuple):
         return np.array(times)
 
     def _cells(self, name):
-        """Cells of the one column of a name."""
-        if self.names.count(name) != 1:
-            others = f"there are {', '.join(filter(None, self.names[:_MOST_NAMES]))} in the header"
-            wrong = f"expected this column once; {'it stands twice' if name in self.names else others}"
-            key = f"column '{name}'"  # where there is one alone, another sign separates
-            key, wrong = ("separator", f"{key}: {wrong}") if len(self.names) == 1 else (key, wrong)
-            raise InputError(self.source, key, wrong)
-        column = self.names.index(name)
+        """Cells of a column."""
+        column = self.place(name)
         return [row[column] if column < len(row) else None for row in self.rows]
 
     def _check_unit(self, name, kind, size):
-        column, stated = self.names.index(name), [unit_of_name(name, kind)]
+        column = self.place(name)
+        stated = [unit_of_name(self.names[column], kind)]
         noted = (str(row[column]) for row in self.notes if column < len(row) and row[column])
         stated += [known_unit(note) for note in noted if note != "min"]  # of rows of min, max and mean
         for unit in filter(None, stated):
@@ -131,9 +173,9 @@ class CellTable(NamedTuple):
     def fault(self, line, name, wrong, key="data"):
         """Error of a cell; in the first row, which shows whether the layout is right, of a key of `TableLayout`."""
         place = f"line {line}, {name}"
-        return InputError(
-            self.source, *((key, f"{place}: {wrong}") if line == self.lines[0] else (place, wrong))
-        )
+        if line != self.lines[0]:
+            return InputError(self.source, place, wrong)
+        return InputError(self.source, key, f"{place}: {wrong}; {self.taken}")
 
     def _number(self, cell, line, name):
         """A cell as a decimal, or None for a gap."""
@@ -184,21 +226,60 @@ def read_table(source, layout):
     else:
         rows = _text_rows(path, layout)
     rows = [(line, row) for line, row in rows if any(cell not in (None, "") for cell in row)]
-    first, header = next(((line, row) for line, row in rows if line >= layout.header), (None, None))
+    wanted = layout.header[-1]
+    first, header = next(((line, row) for line, row in rows if line >= wanted), (None, None))
     if header is None:
-        wrong = f"expected names of columns in line {layout.header}, and rows; it is empty"
+        wrong = f"expected names of columns in line {wanted}, and rows; it is empty"
         raise InputError(source, "header", wrong)
     names = ["" if cell is None else str(cell).strip() for cell in header]
     if all(cell_number(name, layout.decimal) or _CLOCK.fullmatch(name) for name in names):
         names, first = [str(number + 1) for number in range(len(names))], first - 1
+    elif len(layout.header) > 1:
+        names = _joined([row for line, row in rows if line in layout.header[:-1]], names)
     start = layout.data or first + 1
-    below = [(line, row) for line, row in rows if line >= start]
+    below = [(line, row) for line, row in rows if start <= line <= (layout.last or line)]
     if not below:
         wrong = f"expected rows of numbers below the names in line {first}; there is none"
         raise InputError(source, "data" if layout.data else "header", wrong)
     notes = [row for line, row in rows if first < line < start]
     lines, cells = zip(*below, strict=True)
-    return CellTable(str(source), names, notes, list(lines), list(cells), layout.decimal)
+    taken = f"names are of line {', '.join(map(str, layout.header))}, numbers from line {lines[0]} on"
+    taken += _begin_words(rows, lines[0], layout.decimal)
+    return CellTable(str(source), names, notes, list(lines), list(cells), layout.decimal, taken)
+
+
+def _joined(above, names):
+    """Names whose parts stand in several lines."""
+    parts = []
+    for row in above:
+        cells, carried = [], ""
+        for cell in [*row, *[None] * (len(names) - len(row))][: len(names)]:
+            carried = carried if cell in (None, "") else str(cell).strip()
+            cells.append(carried)
+        parts.append(cells)
+    return [" ".join(filter(None, cells)) for cells in zip(*parts, names, strict=True)]
+
+
+def _begin_words(rows, taken, decimal):
+    """Where numbers begin, in words, if not where they were taken from, and lines above with as many cells."""
+
+    def is_numbers(row):
+        cells = [str(cell).strip() for cell in row if cell is not None]
+        read = [
+            cell_number(cell, decimal) or _CLOCK.fullmatch(cell) for cell in cells if cell.lower() not in GAPS
+        ]
+        return len(read) > 1 and all(read)
+
+    numeric = [is_numbers(row) for _, row in rows]
+    begin = next((at for at in range(len(rows) - _RUN + 1) if all(numeric[at : at + _RUN])), None)
+    if begin is None or rows[begin][0] == taken:
+        return ""
+    width = len(rows[begin][1])
+    above = [str(line) for line, row in rows[:begin] if len(row) >= width > 1][-_MOST_HEADERS:]
+    words = f", but numbers begin in line {rows[begin][0]}"
+    return words + (
+        f" below {'lines' if len(above) > 1 else 'line'} {', '.join(above)} of as many cells" if above else ""
+    )
 
 
 def csv_rows(path):
@@ -240,36 +321,54 @@ def csv_records(path):
 def _text_rows(path, layout):
     """Lines of a text file, by number from 1, cut at the separator."""
     lines = read_foreign_text(path).splitlines()
-    header = lines[layout.header - 1] if layout.header <= len(lines) else ""
+    names = layout.header[-1]
+    header = lines[names - 1] if names <= len(lines) else ""
     known = _SEPARATORS.replace(layout.decimal, "")
     separator = layout.separator or next((sign for sign in known if sign in header), " ")
     if separator.isspace() and separator != "\t":
         return _blank_rows(lines, layout, path)
     if len(separator) != 1:
         raise InputError(path, "separator", f"expected one character, not '{separator}'")
+    rows = _cut(lines, separator, path)
+    width = next((len(row) for number, row in rows if number >= names and any(row)), 0)
+    for number, row in rows:
+        # such as a decimal sign that separates
+        if (layout.data or names) <= number <= (layout.last or number) and any(row[width:]):
+            wrong = f"expected at most {width} cells as in line {names}, found {len(row)}"
+            raise InputError(path, f"line {number}", wrong + _begin_words(rows, names + 1, layout.decimal))
+    return rows
+
+
+def _cut(lines, separator, path):
+    """Rows of cells, by number from 1."""
     reader = csv.reader(io.StringIO("\n".join(lines)), delimiter=separator, strict=True)
     try:
-        rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
+        return [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
     except csv.Error as error:
         wrong = f"expected cells between '{separator}'; {error}"
         raise InputError(path, f"line {reader.line_num}", wrong) from None
-    width = next((len(row) for number, row in rows if number >= layout.header and any(row)), 0)
-    for number, row in rows:
-        # such as a decimal sign that separates
-        if number >= (layout.data or layout.header) and any(row[width:]):
-            raise InputError(path, f"line {number}", f"expected at most {width} cells, found {len(row)}")
-    return rows
 
 
 def _blank_rows(lines, layout, path):
     """Lines cut at blanks, where only a row of as many cells as the header tells which one is missing."""
     rows = [(number, line.split()) for number, line in enumerate(lines, start=1)]
-    filled = [(number, row) for number, row in rows if row and number >= layout.header]
+    filled = [(number, row) for number, row in rows if row and number >= layout.header[-1]]
     for number, row in filled:
-        if number >= (layout.data or 0) and len(row) != len(filled[0][1]):
+        if (layout.data or 0) <= number <= (layout.last or number) and len(row) != len(filled[0][1]):
             wrong = f"expected {len(filled[0][1])} cells between blanks as in line {filled[0][0]}, found {len(row)}"
-            raise InputError(path, "header", f"line {number}: {wrong}; a line of numbers counts the columns")
+            wrong += f"; a line of numbers counts the columns{_seen_begin(lines, layout)}"
+            raise InputError(path, "header", f"line {number}: {wrong}")
     return rows
+
+
+def _seen_begin(lines, layout):
+    """Words on another sign between cells, where it makes numbers of lines that blanks do not."""
+    for sign in _SEPARATORS.replace(layout.decimal, ""):
+        rows = [(number, line.split(sign)) for number, line in enumerate(lines, start=1) if line.strip()]
+        words = _begin_words(rows, 0, layout.decimal)
+        if words:
+            return f"; between '{sign}'{words.replace(', but', '')}".replace("\t", "tab")
+    return ""
 
 
 def _sheet_rows(path, sheet):

@@ -266,7 +266,7 @@ TABLES = [
     ("t.csv", "t;a\n0;998\n0.01;1,012\n", (*TABLE, "mm/s2"), "line 3, a: expected a number"),
     ("t.csv", "t;a\n0;998\n0.01;1,012.5\n", (*TABLE, "mm/s2"), "line 3, a: expected a number"),
     ("t.csv", "t;a\n0;1_0\n0.01;1\n", (*TABLE, "mm/s2"), "line 2, a: expected a number"),
-    ("t.csv", "t,a\n0,01,5\n0,02,6\n", (*TABLE, "mm/s2"), "line 2: expected at most 2 cells, found 3"),
+    ("t.csv", "t,a\n0,01,5\n0,02,6\n", (*TABLE, "mm/s2"), "line 2: expected at most 2 cells as in line 1, found 3"),
     ("t.txt", "t a b\n0 1 2\n0.1 3\n0.2 1 2\n", (*TABLE, "mm/s2"), "line 3: expected 3 cells"),
     ("t.csv", table(names=("t", "a [g]")), ("--time", "t", "--column", "x=a [g]", "--unit", "m/s2"),
      "column 'a [g]': expected m/s2; the header states g"),

@@ -14,7 +14,7 @@ _COARSE = 0.02  # s, between the starts that are tried: a tenth of a period of 5
 _SPAN = 0.06  # s, over which velocities are means: half a period of 8 Hz, some 20 Hz and more hardly pass
 # s, by which an even clock may err as written: in five digits, in 32 bits, or in seconds since 1970
 _EVEN = 1e-5
-_LACKING = 1.5  # usual steps, beyond which a clock lacks a row
+LACKING = 1.5  # usual steps, beyond which a clock lacks a row
 _DIGITS = 9  # of a time after the decimal point: nanoseconds
 _RATE = 100.0  # Hz, at which recorder and optical system are compared
 BAND = (1.0, 8.0)  # Hz, where a table's motion is well above the noise of both instruments
@@ -86,8 +86,8 @@ def missing_rows(time):
     """Number of rows that a clock (n_times,) lacks between each one and the next, int64 (n_times - 1,)."""
     steps = np.diff(time)
     # the mean, because 2, 2, 2, 1 ms are printed steps of 1.95 ms; steps of 2 and 3 ms are of one clock
-    rows = steps / steps[steps <= 1.01 * _LACKING * np.median(steps)].mean()
-    return np.where(rows > _LACKING, np.rint(rows) - 1, 0).astype(np.int64)
+    rows = steps / steps[steps <= 1.01 * LACKING * np.median(steps)].mean()
+    return np.where(rows > LACKING, np.rint(rows) - 1, 0).astype(np.int64)
 
 
 def from_first_reading(test):
