@@ -21,7 +21,8 @@ MOST_LINES_OF_COMMON = 165
 # names of pages, folders and hosts outside of the project; written so that this file does not hold them
 OUTSIDE = re.compile(
     r"design[.]md|facts[.]md|design[ ]contract|(?<![\w.])/work[/]|design[ ]section|the[ ]issue(?:'s| asks)"
-    r"|(?:files[.])?pythonhosted[.]org|pypi[.]org/simple"
+    r"|(?:files[.])?pythonhosted[.]org|pypi[.]org/simple",
+    re.IGNORECASE,
 )
 
 

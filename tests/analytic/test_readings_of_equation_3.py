@@ -69,7 +69,7 @@ def test_two_free_bodies_that_may_pull(pulling, make_structure, run_ls_dem):
 def test_node_by_node_a_face_is_overdamped_by_the_root_of_its_nodes(
     spacing, at_least, pulling, make_structure, run_ls_dem
 ):
-    """Facts.md 3.1. Each node has 2 zeta sqrt(m k_i) of its own stiffness k_i and the whole mass:
+    """Each node has 2 zeta sqrt(m k_i) of its own stiffness k_i and the whole mass:
 
     zeta_face = zeta sum(sqrt(k_i)) / sqrt(sum(k_i)), zeta sqrt(N) for N alike. Two sides of 65 nodes make 11 of
     one; 9 and 15 nodes a side show that it is the number of nodes that decides.

@@ -47,7 +47,7 @@ def test_a_pair_that_sleeps_wakes_before_it_touches(make_structure, run_ls_dem):
 
 @pytest.mark.parametrize("order", [(0, 1), (1, 0)])
 def test_a_narrow_body_between_the_nodes_of_a_wide_one_is_found(order, make_structure, run_ls_dem):
-    """Facts.md 3.4: only the narrow body's nodes see the contact, whichever comes first in the file."""
+    """Only the narrow body's nodes see the contact, whichever comes first in the file."""
     shapes = {"plate": {"box": [4.0, 4.0, 0.5]}, "post": {"box": [0.3, 0.3, 1.0]}}
     bodies = [
         {"name": "plate", "shape": "plate", "position": [0.0, 0.0, 5.0]},
