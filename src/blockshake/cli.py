@@ -364,6 +364,8 @@ def _export(options):
     if options.ro_crate:
         from blockshake.own_files.study_crate import export_study
 
+        if options.meshes:
+            raise InputError("--meshes", options.meshes, "expected a run, not `--ro-crate` of a study")
         print(export_study(options.file, options.output))
         return
     from blockshake.views.export import export

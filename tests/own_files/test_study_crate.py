@@ -162,3 +162,10 @@ def test_what_cannot_be_exported_is_refused_in_one_line(folder, capsys, change, 
     assert main(["export", "study.yaml", "--ro-crate", "--output", "crate"]) == 2
     assert words in capsys.readouterr().err
     assert not (folder / "crate" / "ro-crate-metadata.json").exists()
+
+
+def test_meshes_of_a_run_are_no_option_of_a_study(folder, capsys):
+    assert main(["export", "study.yaml", "--ro-crate", "--meshes", "own", "--output", "crate"]) == 2
+    assert (
+        capsys.readouterr().err == "blockshake: --meshes: own: expected a run, not `--ro-crate` of a study\n"
+    )

@@ -188,7 +188,8 @@ def _graph(config, entities, actual, version, end):
             {"@id": one, "@type": "CreativeWork", "name": name, "version": one.rpartition("/")[2]}
             for one, name in _PROFILES.items()
         ),
-        {"@id": _LANGUAGE, "@type": "ComputerLanguage", "name": "Snakemake", "url": "https://snakemake.github.io"},
+        {"@id": _LANGUAGE, "@type": "ComputerLanguage", "name": "Snakemake", "url": "https://snakemake.github.io",
+         "identifier": "https://snakemake.github.io"},
         {"@id": _LICENCE, "@type": "CreativeWork", "name": "MIT License"},
         {
             "@id": action,
