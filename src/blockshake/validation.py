@@ -144,9 +144,11 @@ def _key(location, mapping, prefix):
 
 
 def _words(location, mapping):
-    """Parts of a dotted key, entries of lists by name."""
+    """Parts of a dotted key, entries of lists by name; without tags of kinds that a value may be of, in brackets."""
     words, place = [], mapping
     for part in location:
+        if str(part).startswith("("):
+            continue
         if isinstance(place, (list, tuple)) and isinstance(part, int) and part < len(place):
             place = place[part]
             words.append(called(part, place) if isinstance(place, dict) else str(part))

@@ -53,7 +53,8 @@ def _rows(schema, known, above):
 def _resolved(entry, known):
     """An entry with its reference followed; of alternatives the one that is no null, with keys if there is one."""
     own = {name: value for name, value in entry.items() if name not in ("$ref", "anyOf")}
-    choices = [one for one in entry.get("anyOf", ()) if one.get("type") != "null"]
+    choices = [inner for one in entry.get("anyOf", ()) for inner in one.get("oneOf", [one])]
+    choices = [one for one in choices if one.get("type") != "null"]
     if len(choices) > 1 and not any("$ref" in one for one in choices):
         return {**own, "choices": choices}
     if choices:

@@ -4,7 +4,16 @@ import re
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, ConfigDict, Field, StringConstraints, field_validator, model_validator
+from pydantic import (
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    StringConstraints,
+    Tag,
+    field_validator,
+    model_validator,
+)
 
 from blockshake.dynamics.baseline import AUTO, Baseline
 from blockshake.dynamics.record_set import Intensity, is_record_set
@@ -229,10 +238,17 @@ class StudyCase(Strict):
 class Ladder(IntensityLevels):
     """The intensities that samples climb, and the drift that counts as a potential collapse."""
 
-    largest_drift: Positive | None = Field(
+    largest_drift: (
+        Annotated[
+            Annotated[Positive, Tag("(number)")] | Annotated[dict[str, Positive], Tag("(by name)")],
+            Discriminator(lambda given: "(by name)" if isinstance(given, dict) else "(number)"),
+        ]
+        | None
+    ) = Field(
         None,
         description="displacement of a block relative to the slab that counts as a potential collapse, of all blocks; "
-        "by default half of each block's own smaller horizontal width [m]",
+        "or by block, and slip by joint, `{block-1: 0.2, block-1/block-2: 0.1}`; by default half of each block's own "
+        "smaller horizontal width [m]",
     )
 
 

@@ -25,6 +25,7 @@ from blockshake.simulation.simulate import check_run
 from blockshake.study.calibration.comparison import has_use, parameter_of
 from blockshake.study.calibration.settings import OTHERS, STIFFNESS
 from blockshake.study.ensembles.case_input import COMMANDED, MEASURED, check_record
+from blockshake.study.ensembles.drift_limits import OF_JOINT, slip_limits
 from blockshake.study.sampling.distributions import LINKED, TABLE_2, Discrete, known_as, parameter_unit
 from blockshake.study.sampling.latin_hypercube import complete_correlation, draw_design
 from blockshake.study.sampling.sample_parameters import has_parameter, structure_parameters
@@ -84,6 +85,7 @@ def check_named(config, where):
             tested = check_structure(config.nominal(case).structure, where, key)
             check_measured(case, tested, where, f"{key}.measured")
     check_samples(config.ensemble, structures, where)
+    check_drifts(config.ladder.largest_drift, structures, where)
     for index, case in enumerate(config.cases):
         check_simulations(config, index, structures[case.structure], shaken[index], where)
     for folder in config.diagnosis.campaigns:
@@ -331,6 +333,25 @@ def check_fragility(settings, config, structures, where):
         raise InputError(
             where, "fragility.size", f"expected at most the first samples of the ensemble, {first}"
         )
+
+
+def check_drifts(given, structures, where):
+    """Refuse limits of drifts whose block or joint no structure has."""
+    for name in given if isinstance(given, dict) else ():
+        known = [
+            one
+            for structure in structures.values()
+            for one in (
+                map(OF_JOINT.join, slip_limits(structure, {name: 1.0}))
+                if OF_JOINT in name
+                else (body.name for body in structure.file.bodies if not body.driven)
+            )
+        ]
+        if OF_JOINT not in name:
+            _one_of(name, list(dict.fromkeys(known)), where, "ladder.largest_drift")
+        elif not known:
+            expected = "expected two bodies that touch at the start, LOWER/UPPER"
+            raise InputError(where, f"ladder.largest_drift.{name}", expected)
 
 
 def check_limits(settings, config, structures, where):

@@ -65,8 +65,16 @@ def test_capacities_enclose_those_of_a_block_that_slides(case, tmp_path):
     assert found.identical(again)  # from the store
 
 
-@pytest.mark.parametrize(("given", "limit"), [(None, 0.1), (0.3, 0.3)])
-def test_a_narrow_block_has_its_own_limit(given, limit, case, make_mapping, tmp_path):
+@pytest.mark.parametrize(
+    ("given", "limit", "expected"),
+    [
+        (None, 0.1, [0.5, 0.1]),
+        (0.3, 0.3, [0.3, 0.3]),
+        ({"narrow": 0.2}, 0.2, [0.5, 0.2]),
+        ({"narrow": 0.4, "cube/slab": 0.06}, 0.06, [0.5, 0.4, 0.06]),
+    ],
+)
+def test_a_block_and_a_joint_have_limits_of_their_own(given, limit, expected, case, make_mapping, tmp_path):
     """A cube of 1 m and a block of 0.2 m slide as far as each other: the narrow one leaves its place first."""
     mapping = make_mapping([
         {"name": "cube", "shape": "cube", "position": [0.0, 0.0, 0.5]},
@@ -79,8 +87,8 @@ def test_a_narrow_block_has_its_own_limit(given, limit, case, make_mapping, tmp_
     found = climb_samples(runs, pd.DataFrame({PAIR: [0.3]}), ladder, Store(tmp_path / "store", "source", str))
     lower, upper = float(found["capacity_lower"][0]), float(found["capacity_upper"][0])
     assert sliding(lower, 0.3) <= limit < sliding(upper, 0.3)
-    expected = [given, given] if given else [0.5, 0.1]
-    np.testing.assert_array_equal(found["largest_drift"].sel(body=["cube", "narrow"]), expected)
+    names = ["cube", "narrow", "slab/cube"][: len(expected)]
+    np.testing.assert_array_equal(found["largest_drift"].sel(body=names), expected)
 
 
 def level(scale, passed, status="completed"):

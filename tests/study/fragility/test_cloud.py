@@ -174,9 +174,14 @@ def test_the_demand_is_that_of_the_block_nearest_to_its_own_limit(made_pair):
         {"frame": ["slab"], "marker": ["on-slab", "on-wide", "on-narrow"]},
         ["frame", "sample", "marker"],
     )
-    demand, limit = _nearest(xr.Dataset({"peak": peak}), structure, limits)
+    slip = xr.DataArray([[0.3, 0.1]], {"joint": ["slab-narrow"]}, ["joint", "sample"])
+    counted = xr.Dataset({"peak": peak, "joint_slip": slip})
+    demand, limit = _nearest(counted, structure, None)
     np.testing.assert_array_equal(demand, [0.2, 0.4])
     np.testing.assert_array_equal(limit, [0.15, 0.5])
+    demand, limit = _nearest(counted, structure, {"narrow": 0.1, "slab/narrow": 0.05})
+    np.testing.assert_array_equal(demand, [0.3, 0.1])
+    np.testing.assert_array_equal(limit, [0.05, 0.05])
 
 
 @pytest.fixture

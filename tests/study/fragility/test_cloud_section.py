@@ -35,13 +35,20 @@ def made_cloud(weight=0.5, measure="sa"):
     )  # fmt: skip
 
 
-def content(cloud):
+def content(cloud, given=None):
     response = SimpleNamespace(cloud=cloud)
-    return SimpleNamespace(cases={"wall": SimpleNamespace(responses={"nscd-rigid": response})})
+    cases = {"wall": SimpleNamespace(responses={"nscd-rigid": response})}
+    return SimpleNamespace(cases=cases, study={"ladder": {"largest_drift": given}})
 
 
 def test_a_case_without_drawn_motions_has_no_blocks():
     assert cloud_blocks(content(None)) == []
+
+
+@pytest.mark.parametrize("given", [0.4, {"high": 0.2, "low/high": 0.1}])
+def test_a_limit_of_a_joint_is_named(given):
+    _, words, *_ = cloud_blocks(content(made_cloud(), given))
+    assert ("or a joint slips by more than its own" in words.text) == isinstance(given, dict)
 
 
 def test_both_fragilities_stand_in_the_table():

@@ -10,20 +10,24 @@ from blockshake.dynamics.motion import GroundMotion
 from blockshake.dynamics.system import FINISHED, Status
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import Structure, load_structure
-from blockshake.simulation.run_histories import drift_histories
+from blockshake.simulation.run_histories import drift_histories, run_histories
 from blockshake.simulation.simulate import simulate
 from blockshake.store import Unit
 from blockshake.study.ensembles.case_input import COMMANDED, driving_motions
-from blockshake.study.ensembles.drift_limits import drift_limits
+from blockshake.study.ensembles.drift_limits import OF_JOINT, drift_limits, slip_limits
 from blockshake.study.ensembles.ensemble import describe
 
 _DESCRIBED = {
     "scale": ("factor of the motion", "1"),
     "drift_ratio": (
-        "largest displacement along x of a mass centre relative to the slab over its largest_drift",
+        "largest displacement along x of a mass centre relative to the slab, or slip of a joint, over its "
+        "largest_drift",
         "1",
     ),
-    "largest_drift": ("displacement of a block that counts as a potential collapse", "m"),
+    "largest_drift": (
+        "displacement of a block, or slip of a joint, that counts as a potential collapse",
+        "m",
+    ),
     "passed": ("1 where the stack stood, 0 where it did not, NaN where nobody climbed", "1"),
     "capacity_lower": ("last scale that the sample passed, 0 for none", "1"),
     "capacity_upper": ("first scale that it did not pass, infinity for none", "1"),
@@ -49,7 +53,7 @@ def climb_samples(runs, rows, ladder, store, seed=0):
     xarray.Dataset
         ``drift_ratio`` and ``passed(sample, scale)``; ``capacity_lower`` and ``capacity_upper(sample)``, of
         the motion's factor [1]; ``status`` and ``reason(sample)`` of the last run; ``largest_drift(body)`` of
-        `drift_limits` [m].
+        `drift_limits`, and of `slip_limits` under names such as ``low/high`` [m].
 
     Notes
     -----
@@ -64,10 +68,11 @@ def climb_samples(runs, rows, ladder, store, seed=0):
         levels = climb(structure, runs, motions(sample, row), runs.parameters(row, structure), ladder, store)
         climbs.append(levels)
         store.say(f"{structure.file.name} {runs.model} sample {sample}: {_words(levels)}")
-    limits = xr.DataArray(
-        drift_limits(structure, ladder.largest_drift), {"body": list(structure.body_names)}, ["body"]
+    joints, limits = _limits(structure, ladder)
+    names = [*structure.body_names, *map(OF_JOINT.join, joints)]
+    return gathered(
+        rows.index.to_numpy(), climbs, ladder.scales, xr.DataArray(limits, {"body": names}, ["body"])
     )
-    return gathered(rows.index.to_numpy(), climbs, ladder.scales, limits)
 
 
 def climb(structure, runs, motion, parameters, ladder, store):
@@ -83,26 +88,27 @@ def climb(structure, runs, motion, parameters, ladder, store):
     parameters : dict
         Parameters of the run by dotted name, as `simulate` takes them.
     ladder : Ladder
-        First scale, increment, highest scale and the drift that counts as a potential collapse, of `drift_limits`.
+        First scale, increment, highest scale and what counts as a potential collapse, of `drift_limits` and
+        `slip_limits`.
     store : Store
 
     Returns
     -------
     list of dict
         By level: ``scale``, ``status``, ``reason`` and ``drift_ratio``, the largest displacement along x of a block
-        against the slab over its limit [1]; and ``passed``. The last level is the first that did not pass: it did not
-        complete, or a block's displacement exceeded its limit.
+        against the slab, or slip of a joint, over its limit [1]; and ``passed``. The last level is the first that did
+        not pass: it did not complete, or a displacement or slip exceeded its limit.
 
     Notes
     -----
     Zhou et al. (2023), section Case Study: first test at 50 %, increments of about 25 %.
     """
-    levels, limits = [], drift_limits(structure, ladder.largest_drift)
+    levels, (joints, limits) = [], _limits(structure, ladder)
     for scale in ladder.scales.tolist():
         driven_by = scaled(motion, scale, motion.name)
         step, duration = runs.settings["time_step"], runs.case["duration"]
-        outcome = store.value(_Level(structure, driven_by, runs.model, parameters, step, duration))
-        ratio = float(np.nanmax(outcome.pop("drift") / limits))
+        outcome = store.value(_Level(structure, driven_by, runs.model, parameters, step, duration, joints))
+        ratio = float(np.nanmax(outcome.pop("moved") / limits))
         passed = outcome["status"] == Status.COMPLETED and ratio <= 1.0
         levels.append({"scale": scale, **outcome, "drift_ratio": ratio, "passed": passed})
         if not passed:
@@ -110,9 +116,15 @@ def climb(structure, runs, motion, parameters, ladder, store):
     return levels
 
 
+def _limits(structure, ladder):
+    """Joints that have a limit, as pairs of names, and the limits of all bodies and of these joints [m]."""
+    slips = slip_limits(structure, ladder.largest_drift)
+    return tuple(slips), np.array([*drift_limits(structure, ladder.largest_drift), *slips.values()])
+
+
 @dataclass(frozen=True)
 class _Level(Unit):
-    """How one run ended, and the largest drift of each body along x in it [m]."""
+    """How one run ended, the largest drift of each body along x and the largest slip of some joints in it [m]."""
 
     structure: Structure
     motion: GroundMotion
@@ -120,6 +132,7 @@ class _Level(Unit):
     parameters: dict
     time_step: float  # [s]
     duration: float  # [s]
+    joints: tuple  # of pairs of names
 
     def made(self, checkpoint):
         run = simulate(
@@ -128,8 +141,16 @@ class _Level(Unit):
         )  # fmt: skip
         turns = rotation_matrices(run["orientation"].to_numpy())
         moved = drift_histories(self.structure, run["position"].to_numpy(), turns)[..., 0]
-        drift = np.nanmax(np.abs(moved), axis=0).tolist()
-        return {"status": run.attrs["status"], "reason": run.attrs["reason"], "drift": drift}
+        largest = np.nanmax(np.abs(moved), axis=0).tolist() + self._slips(run)
+        return {"status": run.attrs["status"], "reason": run.attrs["reason"], "moved": largest}
+
+    def _slips(self, run):
+        if not self.joints:
+            return []
+        slip = run_histories(run, self.structure)["slip"].max("time")
+        pairs = zip(slip["lower"].values, slip["upper"].values, slip.to_numpy(), strict=True)
+        found = {frozenset((lower, upper)): float(value) for lower, upper, value in pairs}
+        return [found[frozenset(pair)] for pair in self.joints]
 
 
 def _words(levels):
@@ -161,7 +182,7 @@ def gathered(samples, climbs, scales, largest_drift):
         coords={"sample": samples.astype(np.int64), "scale": scales},
     )
     describe(result, _DESCRIBED)
-    result["body"].attrs = {"long_name": "name of the body"}
+    result["body"].attrs = {"long_name": "name of the body or joint"}
     result["status"].attrs = {"long_name": "how the last run of the sample ended"}
     result["reason"].attrs = {"long_name": "why it ended so"}
     result.attrs = {"title": "levels of intensity that samples pass"}

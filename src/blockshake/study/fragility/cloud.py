@@ -15,7 +15,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.quantities import FACTOR
 from blockshake.statistics.intervals import CONFIDENCE
 from blockshake.store import load_made
-from blockshake.study.ensembles.drift_limits import drift_limits
+from blockshake.study.ensembles.drift_limits import drift_limits, slip_limits
 from blockshake.study.ensembles.ensemble import describe
 from blockshake.study.ensembles.envelope import BOUNDS, counted_samples
 from blockshake.study.fragility.capacity import estimate_capacity
@@ -34,7 +34,7 @@ _DESCRIBED = {
     "dispersion": "standard deviation of the logarithm of the intensity at which a sample does not pass",
     "curve": "probability of not passing",
     "demand": "largest displacement along x relative to the slab, of the marker that comes nearest to its limit",
-    "largest_drift": "displacement of that marker that counts as not passing",
+    "largest_drift": "displacement or slip that counts as not passing",
     "peak_acceleration": "peak ground acceleration along x of the motion of the sample",
     "fell": "1 where the sample collapsed, or still fell as the window ended",
 }
@@ -183,14 +183,14 @@ def cloud_of_case(samples, case, seed, largest_drift):
         ``structure``, ``motion``, ``scale``, ``baseline`` and ``intensity`` of the configuration.
     seed : int
         The design.
-    largest_drift : float or None
-        `drift_limits`.
+    largest_drift : float, dict or None
+        `drift_limits` and `slip_limits`.
 
     Returns
     -------
     xarray.Dataset
         By counted ``sample``: ``record``, ``intensity``, ``peak_acceleration`` [m/s2], ``demand`` and
-        ``largest_drift`` [m] of the marker that comes nearest to the limit of its block, ``fell``. By
+        ``largest_drift`` [m] of the marker that comes nearest to the limit of its block, or of a joint, ``fell``. By
         ``fit``: ``median``, ``dispersion``, ``safe``, each with its ``_interval(fit, bound)``, and
         ``curve(fit, fine_intensity)`` with its limits; NaN where the samples do not tell. ``regression`` is
         `fit_cloud`; ``counts`` the lognormal curve of largest likelihood of passing and not passing, Eq. (11) of Baker
@@ -206,7 +206,7 @@ def cloud_of_case(samples, case, seed, largest_drift):
     counted = counted_samples(load_made(samples))
     structure = load_structure(case["structure"])
     shaken = shaken_by(counted, case, seed)
-    demand, limit = _nearest(counted, structure, drift_limits(structure, largest_drift))
+    demand, limit = _nearest(counted, structure, largest_drift)
     fell = np.isin(counted["status"].values, FALLEN)
     result, cloud = fragilities(shaken, demand, fell, limit)
     peaks = [motion_figures(motion)["peak_acceleration"] for motion in shaken.motions]
@@ -236,13 +236,16 @@ def cloud_of_case(samples, case, seed, largest_drift):
     return result
 
 
-def _nearest(counted, structure, limits):
-    """Largest displacement along x of each sample and its limit, float64 (n_samples,) [m], of the marker whose
-    displacement is the largest share of the limit of its block; ``limits``: by body."""
+def _nearest(counted, structure, given):
+    """Largest displacement along x, or slip, of each sample and its limit, float64 (n_samples,) [m], of the marker or
+    joint that has the largest share of the limit of its block or of its own; ``given``: of `drift_limits`."""
     markers = [one for one in structure.file.markers if not structure.driven[structure.carriers([one])[0]]]
     peak = counted["peak"].sel(frame="slab", marker=[one.name for one in markers], drop=True)
-    peak = peak.transpose("sample", "marker").to_numpy()
-    limit = np.broadcast_to(limits[structure.carriers(markers)], peak.shape)
+    slips = slip_limits(structure, given)
+    slip = counted["joint_slip"].sel(joint=list(map("-".join, slips)), drop=True).transpose("sample", "joint")
+    peak = np.hstack([peak.transpose("sample", "marker").to_numpy(), slip.to_numpy()])
+    limit = [*drift_limits(structure, given)[structure.carriers(markers)], *slips.values()]
+    limit = np.broadcast_to(limit, peak.shape)
     nearest = np.arange(len(peak)), np.argmax(np.nan_to_num(peak / limit), axis=1)
     return peak[nearest], limit[nearest]
 

@@ -12,6 +12,7 @@ from blockshake.pages.wording import (
     model_label,
     percent,
 )
+from blockshake.study.ensembles.drift_limits import limits_joints
 from blockshake.study.fragility.figure import failed, measure_words, plot_clouds
 from blockshake.study.fragility.fragility import SAFE
 
@@ -28,10 +29,12 @@ def cloud_blocks(content):
     }
     if not clouds:
         return []
+    given = content.study["ladder"]["largest_drift"]
     limits = millimetre_range(np.hstack([one["largest_drift"] for one in clouds.values()]))
     words = (
         "Every sample is shaken once, by a motion of its own. It does not pass when it collapses, still falls as its "
-        f"window ends, or a marker moves along x from the slab by more than the limit of its block, {limits} mm. The "
+        f"window ends, or a marker moves along x from the slab by more than the limit of its block, {limits} mm"
+        f"{', or a joint slips by more than its own' if limits_joints(given) else ''}. The "
         "cloud is the regression of the logarithm of that displacement on the logarithm of the intensity, over the "
         "samples that stand and move, with a logistic regression of the falls (Jalayer and Cornell 2009). The counts "
         "are fitted by the lognormal curve of largest likelihood (Baker 2015, Eq. 11). The regression needs no "

@@ -17,6 +17,7 @@ from blockshake.pages.wording import (
     quantile_percent,
 )
 from blockshake.statistics.intervals import CONFIDENCE
+from blockshake.study.ensembles.drift_limits import limits_joints
 from blockshake.study.ensembles.outcomes import count_outcomes
 from blockshake.study.fragility.cloud_section import cloud_blocks
 from blockshake.study.fragility.figure import measure_words, plot_fragility
@@ -33,13 +34,15 @@ def _climbs(content):
     """Blocks on the samples that climb."""
     settings = content.study["fragility"]
     limits = millimetre_range(np.hstack([one["largest_drift"] for one in content.fragility.values()]))
+    joints = limits_joints(content.study["ladder"]["largest_drift"])
     one = any(content.cases[name].settings.get("intensity") is None for name in content.fragility)
     return [
         Text(
             f"Samples that climb the ladder by {model_label(settings['model'])}: each is shaken by the case's "
             f"commanded "
             "motion at rising factors, from the restored stack each time, until it collapses, still falls as its "
-            f"window ends, or the mass centre of a block moves from the slab by more than its limit, {limits} mm, "
+            f"window ends, or the mass centre of a block moves from the slab by more than its limit, {limits} mm"
+            f"{', or a joint slips by more than its own' if joints else ''}, "
             "which counts as a potential collapse. The capacity of a sample lies between the last factor that it "
             "passed and the first that it did not. Where these tell one, the figure has the lognormal distribution "
             "of largest likelihood for such bounds (incremental dynamic analysis, Vamvatsikos and Cornell 2002; "
