@@ -46,7 +46,7 @@ ROOMS_OF_STUDY = [
     ["config_checks"],
     ["analyses"],
     ["config"],
-    ["growth"],
+    ["growth", "planned_runs"],
     ["report"],
 ]
 MOST_MODULES = 15

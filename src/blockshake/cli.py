@@ -481,6 +481,7 @@ def _draw_structure(files, picture):
 def _estimate(options):
     from blockshake.cost.diagnosis_cost import campaign_cost
     from blockshake.cost.study_cost import study_cost
+    from blockshake.pages.wording import count_words, time_words
 
     if options.cores < 1:
         raise InputError("--cores", "", f"expected a whole number from 1, not {options.cores}")
@@ -488,12 +489,12 @@ def _estimate(options):
         parts = campaign_cost(options.file, options.effort)
     else:
         parts = study_cost(options.file)
-    rows = [(part.name, str(part.count), f"{part.seconds / 60.0:.1f}") for part in parts]
-    _print_table([("part", "runs", "CPU min"), *rows])
-    minutes = sum(part.seconds for part in parts) / 60.0
+    rows = [(part.name, str(part.count), time_words(part.seconds)) for part in parts]
+    _print_table([("part", "runs", "CPU time"), *rows])
+    seconds = sum(part.seconds for part in parts)
     print(
-        f"{options.file}: about {minutes:.0f} CPU minutes on this machine, "
-        f"{minutes / options.cores:.0f} min on {options.cores} cores"
+        f"{options.file}: about {time_words(seconds)} of CPU time on this machine, "
+        f"{time_words(seconds / options.cores)} on {count_words(options.cores, 'core')}, if nothing of it is made yet"
     )
 
 

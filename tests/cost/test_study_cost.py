@@ -1,13 +1,15 @@
 """The estimate counts every run of a study, those of the friction search and of the diagnosis too."""
 
 import sys
+from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from blockshake.cost import diagnosis_cost, study_cost
 from blockshake.cost.jobs import CostPart, planned_jobs
-from blockshake.diagnosis.nominal.plan import plan_diagnosis
+from blockshake.diagnosis.nominal.plan import EFFORTS, Plan, plan_diagnosis
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE
 
@@ -45,15 +47,40 @@ def test_every_run_of_the_default_study_is_counted(monkeypatch):
 def test_every_simulated_test_of_a_diagnosis_is_counted(monkeypatch):
     """A simulation costs a second and the readings nothing: CPU seconds are then the numbers of simulated tests."""
     monkeypatch.setattr(diagnosis_cost, "_seconds_of_draws", lambda planned, model: 1.0)
+    tried = []
+    monkeypatch.setattr(diagnosis_cost, "simulate_clean_runs", lambda planned, *others: tried.append(planned))
+    monkeypatch.setattr(diagnosis_cost, "cpu_seconds", lambda call: call() or 1.0)
     folder, known = "data/virtual-campaign/configuration-2", {}
     plan = plan_diagnosis(folder, "standard")
-    *ensembles, of_cause = diagnosis_cost.diagnosis_cost(folder, "standard", known)
+    *clean, first = diagnosis_cost.diagnosis_cost(folder, "quick", {})
+    assert [len(one) for one in tried] == [1] * 4  # a test by each solver, once to load its kernels
+    clean = [one for one in (*clean, first) if one.name.startswith("clean campaigns of 6 tests, ")]
+    # one draw a solver of six tests of equal length
+    assert [(one.count, one.seconds) for one in clean] == [(1, 6.0), (1, 6.0)]
+    *clean, of_cause = diagnosis_cost.diagnosis_cost(folder, "standard", known)
+    ensembles, clean = clean[2:], clean[:2]
+    assert [(one.count, one.seconds) for one in clean] == [(10, 60.0), (10, 60.0)]
     assert sum(part.seconds for part in ensembles) == plan.runs == 2 * 3 * (40 + 4)
     # solvers; open tests with the cause; four ensembles and twins of two sealed tests
     assert of_cause.seconds == 2 * (3 * 40 + 2 * (4 * 12 + 4))
     again = diagnosis_cost.diagnosis_cost(folder, "standard", known)
-    assert len(again) == 1  # the ensembles are there
-    assert diagnosis_cost.diagnosis_cost(folder, "quick", {}) == []
+    assert [one.name for one in again[2:]] == [of_cause.name]  # the ensembles are there
+
+
+@dataclass(frozen=True)
+class _OfOutcomes:
+    tests: dict
+    kind = SimpleNamespace(batches=True)
+
+
+def test_outcomes_of_a_diagnosis_are_counted(monkeypatch):
+    """Two tests are tried, each by as many models as a test has."""
+    monkeypatch.setattr(diagnosis_cost, "simulate_outcomes", lambda campaign, *others: len(campaign.tests))
+    monkeypatch.setattr(diagnosis_cost, "cpu_seconds", lambda call: float(call()))
+    plan = Plan(_OfOutcomes(dict.fromkeys(range(30))), EFFORTS["quick"], [], [])
+    monkeypatch.setattr(diagnosis_cost, "plan_diagnosis", lambda folder, effort: plan)
+    (part,) = diagnosis_cost.diagnosis_cost("folder", "quick", {})
+    assert part == CostPart("outcomes of 30 tests, nscd-rigid", 120, 30.0)
 
 
 def test_jobs_are_those_of_the_workflow():

@@ -1,6 +1,7 @@
 """`blockshake study`: errors with the valid names, progress by case, the folder of the results, one closing line."""
 
 import os
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from blockshake.files import HOME, load_yaml
 from blockshake.own_files import run_study as of_study
 from blockshake.own_files.run_workflow import WorkflowError, workflow_command
 from blockshake.study.config import load_config
+from blockshake.study.planned_runs import planned_runs
 from blockshake.working_folder import hold
 
 STUDY = {
@@ -58,9 +60,9 @@ def workflow(monkeypatch):
     return commands, lines
 
 
-def sample(case, model, number, took=None):
+def sample(case, model, number, took=None, part="samples"):
     ended = "kept: completed" if took is None else f"simulated: completed; took {took} s"
-    return f"{case} {model} sample {number}, {ended}"
+    return f"{part} of {case}, {model}: sample {number}, {ended}"
 
 
 def test_a_study_runs_where_the_user_is_and_says_where_all_is(folder, workflow, capsys):
@@ -70,7 +72,7 @@ def test_a_study_runs_where_the_user_is_and_says_where_all_is(folder, workflow, 
         "study.yaml: a study of 2 cases by ls-dem (10 samples), nscd-rigid (10 samples)\n"
     )
     said = "".join(said).splitlines()
-    assert said[0] == f"mine: 40 runs of ls-dem, nscd-rigid, on 3 cores, in {folder}"
+    assert said[0] == f"mine: 48 runs of ls-dem, nscd-rigid, on 3 cores, in {folder}"
     assert said[-2] == "Both stand."
     assert said[-1].endswith("; reports/mine.html, reports/mine.pdf, results/mine/")
     ((*_, command),) = (workflow[0],)
@@ -88,15 +90,15 @@ def test_progress_is_told_by_case_with_the_time_left(folder, workflow, capsys):
         ]
     )
     assert main(["study", "study.yaml", "--cores", "2"]) == 0
-    told = [line for line in capsys.readouterr().out.splitlines() if " of 10 samples" in line]
-    # nothing is known of LS-DEM; strong runs last twice as long as weak ones: 10 x 4 s on 2 cores
-    assert told[0] == "weak, NSCD rigid: 10 of 10 samples; 10 of 40 runs; more than 20 s left"
-    # and 10 x 10 s by LS-DEM
-    assert told[1] == "weak, LS-DEM: 10 of 10 samples; 20 of 40 runs; about 70 s left"
+    told = [line for line in capsys.readouterr().out.splitlines() if ": 10 of 10; " in line]
+    # nothing is known of LS-DEM; strong runs last twice as long as weak ones, twins take half the step: 12 x 4 s and
+    # 2 x 2 s on 2 cores
+    assert told[0] == "samples of weak, nscd-rigid: 10 of 10; 10 of 48 runs; more than 26 s for the runs left"
+    # and 12 x 10 s and 2 x 5 s by LS-DEM
+    assert told[1] == "samples of weak, ls-dem: 10 of 10; 20 of 48 runs; about 2 min for the runs left"
     # samples that were kept cost nothing
-    assert (
-        told[2]
-        == "strong, LS-DEM: 10 of 10 samples; 30 of 40 runs, 10 of them from the store; about 20 s left"
+    assert told[2] == (
+        "samples of strong, ls-dem: 10 of 10; 30 of 48 runs, 10 of them from the store; about 41 s for the runs left"
     )
     assert len(told) == 3
 
@@ -106,11 +108,12 @@ def test_a_command_that_goes_on_counts_what_is_there(folder, workflow, capsys):
     runs.mkdir(parents=True)
     for batch in ("000-004", "005-007"):
         (runs / f"{batch}.nc").touch()
+    (runs / "half-step.nc").touch()
     workflow[1].extend([*(sample("weak", "ls-dem", number, 2.0) for number in (8, 9))])
     assert main(["study", "study.yaml", "--cores", "1"]) == 0
     said = capsys.readouterr().out.partition("mine: ")[2].splitlines()
-    assert said[1] == "8 of them are there from before, and run again only where their input changed"
-    assert any(line.startswith("weak, LS-DEM: 10 of 10 samples; 10 of 40 runs; ") for line in said)
+    assert said[1] == "10 of them are there from before, and run again only where their input changed"
+    assert any(line.startswith("samples of weak, ls-dem: 10 of 10; 12 of 48 runs; ") for line in said)
 
 
 def test_no_time_is_told_where_none_is_known_and_never_no_time_while_runs_are_left(folder):
@@ -118,13 +121,18 @@ def test_no_time_is_told_where_none_is_known_and_never_no_time_while_runs_are_le
     progress = of_study._Progress(load_config("study.yaml"), 1, None, folder, heard.append)
     for number in range(10):
         progress(sample("weak", "ls-dem", number))
-    assert heard[-1].endswith("10 of 40 runs, 10 of them from the store; the time left is not known yet")
+    assert heard[-1].endswith(
+        "10 of 48 runs, 10 of them from the store; the time of the runs left is not known yet"
+    )
     for case, model in (("strong", "ls-dem"), ("weak", "nscd-rigid"), ("strong", "nscd-rigid")):
         for number in range(10):
             progress(sample(case, model, number, 0.01))
         assert " 0 s" not in heard[-1]
+    for case, model in product(("weak", "strong"), ("ls-dem", "nscd-rigid")):
+        assert heard[-1].endswith(" for the runs left")
+        progress(sample(case, model, 0, 0.02, "twin"))
     assert heard[-1].endswith(
-        "40 of 40 runs, 10 of them from the store; all runs are done, and the jobs after them are left"
+        "48 of 48 runs, 10 of them from the store; all runs are done, and the jobs after them are left"
     )
 
 
@@ -134,12 +142,28 @@ def test_a_command_without_anything_to_do_says_so(folder, workflow, capsys):
     assert capsys.readouterr().out.splitlines()[-1].startswith("mine: nothing was due; reports/mine.html, ")
 
 
-def test_a_twin_counts_no_sample_twice(folder):
-    heard = []
-    progress = of_study._Progress(load_config("study.yaml"), 1, None, folder, heard.append)
-    for _ in range(2):
-        progress(sample("weak", "ls-dem", 0, 1.0))
-    assert len(progress.done["weak", "ls-dem"]) == 1
+def test_every_run_that_the_estimate_lists_is_counted_by_its_own_lines(folder):
+    """Twins, climbing samples and calibrations are no samples of the study, whatever their case is called."""
+    climbs = {"model": "nscd-rigid", "cases": ["weak"], "size": 4}
+    ladder = {"first": 1.0, "increment": 1.0, "highest": 3.0}
+    (folder / "study.yaml").write_text(yaml.safe_dump(STUDY | {"fragility": climbs, "ladder": ladder}))
+    heard, config = [], load_config("study.yaml")
+    progress = of_study._Progress(config, 1, None, folder, heard.append)
+    parts = [
+        one for case in config.cases for model in config.models for one in planned_runs(config, model, case)
+    ]
+    assert list(progress.parts.values()) == parts
+    assert progress.total == sum(one.count for one in parts) == 48 + 4 * 3
+    progress(sample("weak", "ls-dem", 0, 1.0))
+    progress(sample("weak", "ls-dem", 0, 1.0, "twin"))
+    assert progress.done["samples of weak, ls-dem"] == {"sample 0"}
+    assert progress.runs_left() == 60 - 1 - 2
+    for number in range(4):
+        progress(f"fragility of weak, nscd-rigid: sample {number}, passed 3, completed; took 6 s")
+    assert heard[-1].startswith("fragility of weak, nscd-rigid: 4 of 4; 15 of 60 runs; about ")
+    assert progress.runs_left() == 60 - 15
+    progress("calibration of weak, ls-dem: sample 1 in t1, simulated: completed; took 1 s")
+    assert progress.runs_left() == 60 - 15
 
 
 def test_a_model_with_a_name_of_its_own_is_told_by_it(folder):
@@ -149,7 +173,7 @@ def test_a_model_with_a_name_of_its_own_is_told_by_it(folder):
     progress = of_study._Progress(load_config("study.yaml"), 1, None, folder, heard.append)
     for number in range(10):
         progress(sample("weak", "ls-dem-as-printed", number, 1.0))
-    assert heard[-1].startswith("weak, LS-DEM as printed: 10 of 10 samples; 10 of 60 runs; ")
+    assert heard[-1].startswith("samples of weak, ls-dem-as-printed: 10 of 10; 10 of 72 runs; ")
 
 
 def test_the_study_in_the_very_folder_of_the_output_is_left_as_it_is(folder, workflow):
@@ -163,7 +187,7 @@ def test_one_case_is_run_and_reported_alone(folder, workflow, capsys):
     assert main(["study", "study.yaml", "--case", "strong"]) == 0
     assert "reports/mine-strong.html" in workflow[0][0]
     said = capsys.readouterr().out
-    assert "mine: 20 runs" in said
+    assert "mine: 24 runs" in said
     assert said.endswith("; reports/mine-strong.html, reports/mine-strong.pdf, results/mine/\n")
 
 

@@ -8,12 +8,9 @@ from blockshake.cost.trial import run_seconds
 from blockshake.dynamics.record_set import DrawnMotions
 from blockshake.files import HOME
 from blockshake.geometry.structure import load_structure
-from blockshake.measurement.campaigns.campaign import load_campaign, load_test
-from blockshake.measurement.motion.measured_base import record_start
 from blockshake.simulation.models import solver_of
 from blockshake.study.config import load_config
-
-_TWIN = 2  # runs that a twin costs, of half the step
+from blockshake.study.planned_runs import planned_runs
 
 
 def study_cost(path):
@@ -33,10 +30,9 @@ def study_cost(path):
             structure = load_structure(case.structure)
             motion = next(DrawnMotions.of(case.model_dump()).strongest())
             trial = {"model": solver_of(model).name, **settings.model_dump()}
-            planned = _runs(config, model, case)
-            runs = sum(count for count, _ in planned.values())
-            each = run_seconds(structure, motion, trial, case.duration, runs)
-            parts += [CostPart(name, count, whole * each) for name, (count, whole) in planned.items()]
+            planned = planned_runs(config, model, case)
+            each = run_seconds(structure, motion, trial, case.duration, sum(one.count for one in planned))
+            parts += [CostPart(one.name, one.count, one.motions * each) for one in planned]
     tried = {}
     for folder in config.diagnosis.campaigns:
         parts += diagnosis_cost(folder, config.diagnosis.effort, tried)
@@ -45,29 +41,3 @@ def study_cost(path):
         "--configfile", str(path),
     ]  # fmt: skip
     return [*parts, planned_jobs(command)]
-
-
-def _runs(config, model, case):
-    """Runs of a case by a model, by the part of the study: their number, and the whole motions in them."""
-    samples = config.samples(model, case.name)
-    runs = {f"samples of {case.name}, {model}": (samples, samples)}
-    if config.has_twin(model, case.name):
-        runs[f"twin of {case.name}, {model}"] = _TWIN, _TWIN
-    planned = config.calibration
-    if planned is not None and case.name in planned.cases.get(model, ()):
-        # a test is simulated for its record where that is shorter than the case
-        shares = [min(record / case.duration, 1.0) for record in _records(planned, case)]
-        steps = planned.size * planned.steps(config.ensemble.distributions, solver_of(model))
-        runs[f"calibration of {case.name}, {model}"] = planned.size * len(shares), steps * sum(shares)
-    climbs = config.fragility
-    if climbs is not None and climbs.model == model and case.name in climbs.cases:
-        count = climbs.size * len(config.ladder.scales)
-        runs[f"fragility of {case.name}"] = count, count
-    return runs
-
-
-def _records(calibration, case):
-    """Lengths of the open tests of a case's campaign that the calibration simulates [s]."""
-    campaign = load_campaign(case.measured.campaign)
-    times = [load_test(campaign, name)["time"].to_numpy() for name in calibration.chosen(campaign)]
-    return [float(time[-1] - record_start(time)) for time in times]

@@ -2,7 +2,6 @@
 
 import copy
 import os
-import re
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -13,12 +12,13 @@ from blockshake.errors import InputError
 from blockshake.files import AnyPath, check_output, load_yaml, write_text
 from blockshake.own_files.run_workflow import Listener, cores_of, run_workflow, workflow_command
 from blockshake.pages.answer_lines import answer_lines
-from blockshake.pages.wording import count_words, model_label
+from blockshake.pages.wording import count_words, time_words
 from blockshake.study.config import load_config
+from blockshake.study.ensembles.batch import CALIBRATION, SAMPLES, TWIN
 from blockshake.study.growth import grow, reached
+from blockshake.study.planned_runs import LINE, planned_runs
 from blockshake.working_folder import hold
 
-_SAMPLE = re.compile(r"^(\S+) (\S+) sample (\d+), (kept|simulated): .*?(?:; took ([\d.e+]+) s)?$")
 _IDLE = "Nothing to be done"
 _SO_FAR = "report so far: "
 _FILES = ("structure", "motion")
@@ -99,7 +99,7 @@ def run_study(
     run_workflow(workflow_command(cores, folder, path, target), progress)
     shown = [report.with_suffix(".html"), report.with_suffix(".pdf"), folder / "results" / config.name]
     shown = [Path(os.path.relpath(one)) for one in shown]
-    done = "nothing was due" if progress.idle else f"done in {_minutes(time.monotonic() - begin)}"
+    done = "nothing was due" if progress.idle else f"done in {time_words(time.monotonic() - begin)}"
     for line in answer_lines(shown[0]):
         say(line)
     say(f"{config.name}: {done}; {shown[0]}, {shown[1]}, {shown[2]}/")
@@ -130,39 +130,41 @@ def _seen_from(folder, study):
 
 
 class _Progress(Listener):
-    """Follows a workflow, and reports how far every case is and how long the rest takes.
+    """Follows a workflow, and reports how far every part of the study is and how long the runs left take.
 
-    The time left is that of the samples that are not done, by the mean cost of the samples of the same case and model,
-    else of the model per second simulated. Where a model has no sample yet, the rest takes longer than is said. Samples
-    whose batch a command before has finished are done.
+    Parts and runs are those that `blockshake estimate` lists. The time left is that of the runs that are not done, by
+    the mean cost of those of the same part, else of the model per second simulated. Where a model has no run yet, the
+    rest takes longer than is said. Runs whose file a command before has finished are done.
     """
 
     def __init__(self, config, cores, only, folder, say):
         super().__init__(config.name, say)
         self.cores = cores
         cases = [case for case in config.cases if only in (None, case.name)]
-        self.durations = {case.name: case.duration for case in cases}
-        self.wanted = {
-            (case.name, model): config.samples(model, case.name) for case in cases for model in config.models
+        planned = [
+            one for case in cases for model in config.models for one in planned_runs(config, model, case)
+        ]
+        # no report of a case alone has the calibration, which is one of all
+        self.parts = {one.name: one for one in planned if only is None or one.part != CALIBRATION}
+        results = folder / "results" / config.name
+        self.done = {name: _finished(results, part) & set(part.lines) for name, part in self.parts.items()}
+        durations = {case.name: case.duration for case in cases}
+        # seconds of motion behind a line
+        self.simulated = {
+            name: part.motions * durations[part.case] / len(part.lines) for name, part in self.parts.items()
         }
-        runs = folder / "results" / config.name / "runs"
-        self.done = {
-            (case, model): _finished(runs / model / case) & set(range(wanted))
-            for (case, model), wanted in self.wanted.items()
-        }
-        self.costs, self.kept = {pair: [] for pair in self.wanted}, 0  # runs that the store had
-        self.total, self.idle = sum(self.wanted.values()), False
+        self.costs, self.kept = {name: [] for name in self.parts}, 0  # runs that the store had
+        self.total, self.idle = sum(part.count for part in self.parts.values()), False
 
     def __call__(self, line):
         super().__call__(line)
         self.idle = self.idle or line.startswith(_IDLE)
-        if found := _SAMPLE.match(line):
-            pair = found[1], found[2]
-            if pair in self.done:
-                self.kept += found[4] == "kept" and int(found[3]) not in self.done[pair]
-                self.done[pair].add(int(found[3]))
-                self.costs[pair] += [float(found[5])] if found[5] else []
-                self._tell(pair)
+        if (found := LINE.match(line)) and found[1] in self.parts:
+            name = found[1]
+            self.kept += found[3].startswith("kept") and found[2] not in self.done[name]
+            self.done[name].add(found[2])
+            self.costs[name] += [float(found[4])] if found[4] else []
+            self._tell(name)
         elif line.startswith(_SO_FAR):
             self.say(line)
 
@@ -171,28 +173,28 @@ class _Progress(Listener):
             self.say(f"all runs are done; {done} of {total} jobs")
 
     def runs_left(self):
-        return self.total - sum(map(len, self.done.values()))
+        return self.total - sum(
+            part.count * len(self.done[name]) // len(part.lines) for name, part in self.parts.items()
+        )
 
-    def _tell(self, pair):
-        count, wanted = len(self.done[pair]), self.wanted[pair]
+    def _tell(self, name):
+        count, wanted = len(self.done[name]), len(self.parts[name].lines)
         if count == wanted or self.is_due():
             share = f"{self.total - self.runs_left()} of {self.total} runs"
             share += f", {self.kept} of them from the store" if self.kept else ""
-            label = model_label(pair[1])
-            self.say(f"{pair[0]}, {label}: {count} of {wanted} samples; {share}; {self._left()}")
+            self.say(f"{name}: {count} of {wanted}; {share}; {self._left()}")
 
     def _left(self):
-        """Time that the samples left will take, in words."""
+        """Time that the runs left will take, in words."""
         seconds, unknown = 0.0, False
-        for (case, model), count in self.wanted.items():
-            left = count - len(self.done[case, model])
-            if left <= 0:
+        for name, part in self.parts.items():
+            left = len(part.lines) - len(self.done[name])
+            if not left:
                 continue
-            own = self.costs[case, model]
-            rates = own or [
-                cost * self.durations[case] / self.durations[other]
-                for (other, name), costs in self.costs.items()
-                if name == model
+            rates = self.costs[name] or [
+                cost * self.simulated[name] / self.simulated[other]
+                for other, costs in self.costs.items()
+                if self.parts[other].model == part.model
                 for cost in costs
             ]
             unknown = unknown or not rates
@@ -200,16 +202,20 @@ class _Progress(Listener):
         if not self.runs_left():
             return "all runs are done, and the jobs after them are left"
         if seconds == 0.0:
-            return "the time left is not known yet"
-        words = _minutes(max(seconds / self.cores, 1.0))
-        return f"{'more than' if unknown else 'about'} {words} left"
+            return "the time of the runs left is not known yet"
+        words = time_words(seconds / self.cores)
+        return f"{'more than' if unknown else 'about'} {words} for the runs left"
 
 
-def _finished(folder):
-    """Samples of the batches in a folder, whose names are such as ``010-019.nc``."""
-    batches = (path.stem.split("-") for path in folder.glob("[0-9]*-*.nc"))
-    return {sample for first, last in batches for sample in range(int(first), int(last) + 1)}
-
-
-def _minutes(seconds):
-    return f"{seconds:.0f} s" if seconds < 90.0 else f"{seconds / 60.0:.0f} min"
+def _finished(results, part):
+    """Lines of the runs of a `PlannedRuns` whose files are in the folder of a study's results."""
+    runs = results / "runs" / part.model / part.case
+    whole = {
+        TWIN: runs / "half-step.nc",
+        CALIBRATION: results / "open-tests" / part.model / f"{part.case}.nc",
+    }
+    if part.part in whole:
+        return set(part.lines) if whole[part.part].exists() else set()
+    batches = (runs if part.part == SAMPLES else results / "climbs" / part.case).glob("[0-9]*-*.nc")
+    ends = (path.stem.split("-") for path in batches)
+    return {f"sample {number}" for first, last in ends for number in range(int(first), int(last) + 1)}

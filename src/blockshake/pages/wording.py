@@ -120,6 +120,17 @@ def count_words(count, noun):
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
+def time_words(seconds):
+    """A time that work takes, at least a second: ``45 s``.
+
+    >>> time_words(0.2), time_words(45.0), time_words(600.0), time_words(2e4)
+    ('1 s', '45 s', '10 min', '5.6 h')
+    """
+    if seconds < 90.0:
+        return f"{max(seconds, 1.0):.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 7200.0 else f"{seconds / 3600.0:.1f} h"
+
+
 def listed(words, last="and"):
     """Words in a row: ``a, b and c``."""
     *others, end = words

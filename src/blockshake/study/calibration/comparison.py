@@ -76,7 +76,7 @@ def compare_open_tests(case, campaign, model, given, store):
         test = open_test(case, campaign, name)
         store.say(f"{name}: {test.case['motion']} at {test.case['scale']:g}, {test.case['duration']:.4g} s")
         run = run_settings, rows, steps, ensemble, store
-        tests[name] = _compared(test, simulate_readings(test, solver_of(model).name, *run))
+        tests[name] = _compared(test, simulate_readings(test, model, *run))
     shares = [ranges[one].share(drawn[one].to_numpy()) for one in used]
     found = xr.concat(tests.values(), dim=xr.Variable("test", list(tests)))
     found = found.assign(share=(("parameter", "sample"), shares)).assign_coords(parameter=used)

@@ -17,8 +17,10 @@ from blockshake.measurement.motion.compared_curves import curves_along_x
 from blockshake.measurement.sensors.accelerometers import CUTOFF, whole_channels
 from blockshake.measurement.sensors.instruments import Instruments, observe
 from blockshake.measurement.sensors.markers import driven_marker
+from blockshake.simulation.models import solver_of
 from blockshake.simulation.simulate import simulate
 from blockshake.store import Unit, load_made
+from blockshake.study.ensembles.batch import CALIBRATION, part_name
 from blockshake.study.ensembles.case_input import (
     MEASURED,
     check_known,
@@ -79,6 +81,7 @@ def simulate_readings(test, model, settings, rows, time_steps, ensemble, store):
     ----------
     test : OpenTest
     model : str
+        Of the study.
     settings : dict
         ``parameters`` of the solver by dotted name, ``output_rate`` [Hz].
     rows : pandas.DataFrame
@@ -96,15 +99,16 @@ def simulate_readings(test, model, settings, rows, time_steps, ensemble, store):
     """
     case, structure = test.case, structure_of_case(test.case, test.base)
     motions = driving_motions(case, test.base, ensemble["seed"])
-    found = []
+    part = part_name(CALIBRATION, case["name"], model)
+    solver, found = solver_of(model).name, []
     for sample, row in rows.iterrows():
-        parameters = settings["parameters"] | used_parameters(row, structure, ensemble["linked"], model)
-        noise = content_digest("noise", test.name, model, structure.digest, ensemble["seed"], int(sample))
+        parameters = settings["parameters"] | used_parameters(row, structure, ensemble["linked"], solver)
+        noise = content_digest("noise", test.name, solver, structure.digest, ensemble["seed"], int(sample))
         unit = _Readings(
-            structure, motions(sample, row), model, parameters, float(time_steps[sample]), case["duration"],
+            structure, motions(sample, row), solver, parameters, float(time_steps[sample]), case["duration"],
             settings["output_rate"], test.instruments, int(noise, 16),
         )  # fmt: skip
-        path = store.dataset(f"{structure.file.name} {model} sample {sample}", unit)
+        path = store.dataset(f"{part}: sample {sample} in {test.name}", unit)
         status = load_made(path, ("marker_displacement", "log_spectrum")).attrs["status"]
         found.append(path if status in FINISHED else None)
     return found

@@ -18,7 +18,14 @@ from blockshake.study.ensembles.ensemble import DECIMALS, as_sample, run_alone
 from blockshake.study.sampling.sample_parameters import used_parameters
 from blockshake.study.sampling.sample_table import load_design
 
+SAMPLES, TWIN, CALIBRATION, FRAGILITY = "samples", "twin", "calibration", "fragility"
+"""Parts of a study, by which its runs are counted."""
 HALF_STEP = "half-step"  # batch of the twin: the first sample at half the time step
+
+
+def part_name(part, case, model):
+    """Name of the runs of a case by a model in one part of a study, as lines on them begin."""
+    return f"{part} of {case}, {model}"
 
 
 class CaseRuns(NamedTuple):
@@ -37,7 +44,7 @@ class CaseRuns(NamedTuple):
         return self.settings.get("parameters", {}) | used_parameters(row, structure, self.linked, self.model)
 
 
-def simulate_samples(runs, motions, rows, store, base=None):
+def simulate_samples(runs, motions, rows, store, base=None, part=SAMPLES):
     """Runs of samples, simulated where the store has not got them.
 
     Parameters
@@ -50,6 +57,8 @@ def simulate_samples(runs, motions, rows, store, base=None):
     store : Store
     base : xarray.Dataset, path or None
         From `measured_input`, where the case names a measured test: the blocks start where they stood in it.
+    part : str
+        Of the study.
 
     Returns
     -------
@@ -67,8 +76,8 @@ def simulate_samples(runs, motions, rows, store, base=None):
             structure, motions(sample, row), solver, runs.parameters(row, structure), settings["time_step"],
             case["duration"], output_rate,
         )  # fmt: skip
-        words = f"{case.get('name', structure.file.name)} {model} sample {sample}"
-        finished.append(store.dataset(words, unit))
+        name = part_name(part, case.get("name", structure.file.name), model)
+        finished.append(store.dataset(f"{name}: sample {sample}", unit))
     return finished
 
 

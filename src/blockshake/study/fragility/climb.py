@@ -1,5 +1,6 @@
 """Samples of a case that climb the ladder of intensities, each until its potential collapse."""
 
+import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,7 @@ from blockshake.geometry.structure import Structure, load_structure
 from blockshake.simulation.run_histories import drift_histories, run_histories
 from blockshake.simulation.simulate import simulate
 from blockshake.store import Unit
+from blockshake.study.ensembles.batch import FRAGILITY, part_name
 from blockshake.study.ensembles.case_input import COMMANDED, driving_motions
 from blockshake.study.ensembles.drift_limits import OF_JOINT, drift_limits, slip_limits
 from blockshake.study.ensembles.ensemble import describe
@@ -63,11 +65,12 @@ def climb_samples(runs, rows, ladder, store, seed=0):
     """
     structure = load_structure(runs.case["structure"])
     motions = driving_motions(runs.case | {"scale": 1.0, "input": COMMANDED}, None, seed)
-    climbs = []
+    climbs, name = [], part_name(FRAGILITY, runs.case.get("name", structure.file.name), runs.model)
     for sample, row in rows.iterrows():
+        begin = time.monotonic()
         levels = climb(structure, runs, motions(sample, row), runs.parameters(row, structure), ladder, store)
         climbs.append(levels)
-        store.say(f"{structure.file.name} {runs.model} sample {sample}: {_words(levels)}")
+        store.say(f"{name}: sample {sample}, {_words(levels)}; took {time.monotonic() - begin:.3g} s")
     joints, limits = _limits(structure, ladder)
     names = [*structure.body_names, *map(OF_JOINT.join, joints)]
     return gathered(
