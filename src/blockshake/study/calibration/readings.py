@@ -81,7 +81,7 @@ def simulate_readings(test, model, settings, rows, time_steps, ensemble, store):
     ----------
     test : OpenTest
     model : str
-        Of the study.
+        Name of the study's model.
     settings : dict
         ``parameters`` of the solver by dotted name, ``output_rate`` [Hz].
     rows : pandas.DataFrame

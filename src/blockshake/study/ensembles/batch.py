@@ -58,7 +58,7 @@ def simulate_samples(runs, motions, rows, store, base=None, part=SAMPLES):
     base : xarray.Dataset, path or None
         From `measured_input`, where the case names a measured test: the blocks start where they stood in it.
     part : str
-        Of the study.
+        Part of the study, one of those above.
 
     Returns
     -------
