@@ -277,3 +277,28 @@ def test_frames_that_were_lost_are_gaps(tmp_path, capsys):
         marker="base", axis="x"
     )
     assert np.flatnonzero(read.isnull()).tolist() == [150, 151]
+
+
+def test_single_zeros_of_a_logger_are_gaps(tmp_path, capsys):
+    """An offset of 57 cm, and a contact that is lost twice; the accelerometer passes through 0 as it should."""
+    lines = logger().splitlines()
+    cells = [line.split(";") for line in lines]
+    for row, line in enumerate(cells[5:]):
+        line[2] = "0,000000" if row in (300, 301, 450) else f"{float(line[2].replace(',', '.')) + 57.0:.6f}"
+        line[1] = "0,000000" if row == 130 else line[1]
+        line[2] = line[2].replace(".", ",")
+    text = "t,base X,base Y,base Z,top X,top Y,top Z\n" + table([TIME, CELLS])
+    settings = {
+        "time": "t",
+        "acceleration_unit": "g",
+        "accelerometers": RECORDER | {"displacement_unit": "cm"},
+    }
+    mapped = XYZ | {"acc-x": "A1", "wire": "S1"}
+    other = "\n".join(";".join(line) for line in cells)
+    code, printed = imported(tmp_path, capsys, mapped, text, other, **settings)
+    assert code == 0, printed
+    assert "0 between readings far from it, first at 1.5 s (3 in all), taken as gaps: wire" in printed
+    test = load_test(load_campaign(tmp_path / "made"), "t1")
+    wire = test["transducer_displacement"].sel(transducer="wire").to_numpy()
+    assert np.flatnonzero(np.isnan(wire)).tolist() == [300, 301, 450]
+    assert np.nanmax(np.abs(wire)) < 0.011

@@ -20,6 +20,7 @@ from blockshake.measurement.campaigns.campaign_folder import (
     structure_in_folder,
     write_campaign_file,
 )
+from blockshake.measurement.campaigns.faulty_readings import dropouts, dropped_words
 from blockshake.measurement.campaigns.lost_markers import lost_words
 from blockshake.measurement.campaigns.recorded_test import FIRST_READINGS, checked_test
 from blockshake.measurement.checks.campaign_check import campaign_lines
@@ -175,7 +176,7 @@ def _read_readings(test, import_map, structure, where):
     else:
         check_once([key for key in (*markers, *posed) if key not in apart], import_map, where)
         check_once([*apart, *channels, *transducers], recorder_map(import_map), where)
-    time, read, lost, starts, filmed, remarks = None, {}, "", {}, {}, []
+    time, read, lost, starts, filmed, remarks = None, {}, [], {}, {}, []
     if markers:
         time, read, lost, starts, remarks = _displacements(test, markers, posed, import_map, where)
     for body in dict.fromkeys(key.rpartition(".")[0] for key in posed):
@@ -208,6 +209,9 @@ def _read_readings(test, import_map, structure, where):
             continue
         time_acc, read, more = columns_of(source, sensors, import_map, kind, where, source != test.file)
         remarks += more
+        dropped = dropouts(read)
+        read[dropped] = np.nan
+        lost += _dropped_lines(sensors, dropped, time_acc)
         if kind == "displacement":
             for column, key in zip(read.T, sensors, strict=True):
                 column -= rest_of(time_acc, column, import_map, where, f"{source}: {key}")
@@ -216,11 +220,11 @@ def _read_readings(test, import_map, structure, where):
             variables[variable] = (("time_acc", dimension), read[:, known], {"units": unit})
             coordinates["time_acc"] = ("time_acc", time_acc, {"units": "s"})
             coordinates[dimension] = np.array(sensors)[known]
-    return xr.Dataset(variables, coordinates, {"lost_markers": lost} if lost else {}), remarks
+    return xr.Dataset(variables, coordinates, {"lost_markers": "\n".join(lost)} if lost else {}), remarks
 
 
 def _displacements(test, keys, posed, import_map, where):
-    """Times, displacements (n_times, 3) [m] by marker, from its own columns, a line on each marker that was lost,
+    """Times, displacements (n_times, 3) [m] by marker, from its own columns, lines on what was lost,
     the first readings (n, 3) by marker, and remarks.
 
     Displacements are NaN along axes without a column, and where a marker was lost.
@@ -241,7 +245,8 @@ def _displacements(test, keys, posed, import_map, where):
         remarks += [*said, f"{', '.join(apart)} of the recorder: both clocks are taken to have the same zero"]
     readings = np.column_stack([columns[key] for key in keys])
     zeros, found = _zeros_of_lost(keys, readings), {}
-    readings[zeros] = np.nan
+    dropped = dropouts(np.where(zeros, np.nan, readings))
+    readings[zeros | dropped] = np.nan
     lost = {key.rpartition(".")[0]: rows for key, rows in zip(keys, zeros.T, strict=True) if rows.any()}
     for key, column in zip(keys, readings.T, strict=True):
         name, _, axis = key.rpartition(".")
@@ -256,7 +261,8 @@ def _displacements(test, keys, posed, import_map, where):
     return (
         time,
         found,
-        "\n".join(f"{name}: {lost_words(rows, time - time[0])}" for name, rows in lost.items()),
+        [f"{name}: {lost_words(rows, time - time[0])}" for name, rows in lost.items()]
+        + _dropped_lines(keys, dropped, time),
         starts,
         remarks,
     )
@@ -269,6 +275,12 @@ def _places(starts, nominal):
         warnings.simplefilter("ignore", RuntimeWarning)  # of places that are lost at first
         first = [np.nanmedian(starts[name], axis=0) for name in names]
     return place_remarks(names, np.array(first), np.array([nominal[name] for name in names])) if names else []
+
+
+def _dropped_lines(names, dropped, time):
+    """A line on each column that read 0 for moments, by the mask (n_times, n_columns)."""
+    columns = zip(names, dropped.T, strict=True)
+    return [f"{name}: {dropped_words(rows, time - time[0])}" for name, rows in columns if rows.any()]
 
 
 def _zeros_of_lost(keys, readings):

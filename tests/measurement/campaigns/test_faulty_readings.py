@@ -6,7 +6,7 @@ from resting_stack import MARKERS, MOTION, STRUCTURE, resting_stack, write_campa
 
 from blockshake.errors import InputError
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
-from blockshake.measurement.campaigns.faulty_readings import without_faulty
+from blockshake.measurement.campaigns.faulty_readings import dropouts, without_faulty
 from blockshake.measurement.checks.campaign_check import campaign_lines
 
 OWN = MARKERS.index("block-1-lower")
@@ -147,3 +147,18 @@ def test_a_stuck_accelerometer_and_a_stuck_slab_are_named(tmp_path):
     folder = write_campaign(tmp_path, _spoilt(stick))
     with pytest.raises(InputError, match=r"expected a marker of the driven body.*; 10\.24 m throughout"):
         load_test(load_campaign(folder), "t1")
+
+
+@pytest.mark.parametrize("lost", [[150], [150, 151, 152], [40, 200]])
+def test_zeros_between_readings_that_stand_off_are_found(lost):
+    """A sine of 1 Hz about 5, in steps of at most 0.05, whose zeros stand 4 and more off."""
+    values = 5.0 + np.sin(2.0 * np.pi * np.arange(300) / 100.0)
+    values[lost] = 0.0
+    assert np.flatnonzero(dropouts(values[:, None])).tolist() == lost
+
+
+@pytest.mark.parametrize("amplitude", [0.01, 1.0, 100.0])
+def test_zeros_that_a_motion_passes_are_none(amplitude):
+    """Digits of a hundredth, so that many readings are 0."""
+    values = np.round(amplitude * np.sin(0.1 * np.arange(600)), 2)
+    assert not dropouts(values[:, None]).any()

@@ -119,15 +119,15 @@ def from_command(test, structure, command):
     Returns
     -------
     xarray.Dataset
-        Attribute ``follows`` is 1. Where the slab does not follow the command along x, ``follows`` is 0 and times count
-        from the markers' first reading.
+        Attribute ``follows`` is 1, and ``correlation`` that of the velocities. Where the slab does not follow the
+        command along x, ``follows`` is 0 and times count from the markers' first reading.
     """
     start = Start(0.0, 0.0)
     if command is not None:
         start = command_start(test["time"].to_numpy(), slab_displacement(test, structure)[:, 0], command)
     follows = start.related and start.correlation > 0.0
     zero = round(start.time, 6) if follows else 0.0
-    return since(test, zero, -np.inf).assign_attrs(follows=int(follows))
+    return since(test, zero, -np.inf).assign_attrs(follows=int(follows), correlation=start.correlation)
 
 
 def simulation_start(time):

@@ -13,6 +13,8 @@ from blockshake.measurement.campaigns.clocks import command_start
 _FOLLOWED = (0.8, 1.25)  # of the command, by which a table may move without a word
 _SEEN = 2.0  # times the slab's noise, that the command's standard deviation must be to be judged
 _RELATED = 0.7  # correlation of the slab with the command, beyond which one is the other's motion
+_SURE = 0.95  # correlation of velocities, above which no other motion is tried
+_BETTER = 0.25  # of the variance that the stated motion leaves, that another may leave
 _UNIT = 20.0  # times the command, by which no table moves; centimetres are a hundred times
 _ONE_AXIS = 3.0  # times the motion along another axis
 
@@ -77,6 +79,38 @@ def followed_remarks(followed, role):
     if role != "sealed" and not _FOLLOWED[0] < share < _FOLLOWED[1]:
         return [f"the table moved by {share:.2f} of what was commanded"]
     return []
+
+
+def another_record_remarks(test, slab, campaign, entry):
+    """A remark where the slab follows another motion far better than the one that the test names.
+
+    Parameters
+    ----------
+    test : xarray.Dataset
+        From `load_test`.
+    slab : float64 array, shape (n_times, 3)
+        Mean displacement of the slab's markers [m].
+    campaign : Campaign
+        Whose other motions, and those that are shipped, are tried at any start and size.
+    entry : MeasuredTest
+    """
+    stated = test.attrs["correlation"]
+    if stated > _SURE:
+        return []
+    found = {}
+    listed = {other.motion: other for other in campaign.tests.values()}
+    shipped = {name: entry.model_copy(update={"motion": name}) for name in shipped_names("motions")}
+    for name, other in (shipped | listed).items():
+        motion = None if name == entry.motion else commanded_motion(campaign, other)
+        if motion is not None:
+            found[name] = command_start(test["time"].to_numpy(), slab[:, 0], motion).correlation
+    best = max(found, key=found.get, default=None)
+    if best is None or found[best] < _FOLLOWED[0] or 1.0 - found[best] ** 2 > _BETTER * (1.0 - stated**2):
+        return []
+    return [
+        f"the table follows {best} (correlation of velocities {found[best]:.2f}), not {entry.motion} ({stated:.2f}): "
+        "another record?"
+    ]
 
 
 def command_target(test, slab, commanded):

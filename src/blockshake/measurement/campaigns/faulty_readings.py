@@ -11,6 +11,7 @@ LEVEL = 1e-3  # chance of any such column in a test of faultless sensors
 _SHORTEST = 10  # steps without a change, below which nothing is called frozen
 # chance that a faultless reading repeats the one before: a motion turns, and digits are few
 _LEAST_REPEATED = 0.1
+_DROP, _NEARLY_ALL = 3.0, 0.995  # times the step that this share of a column's steps stays below
 _SAME = 1e-6  # of a column's range: readings this near its end are at it
 _FEWEST_AT_END = 4
 _NOISY = 0.3  # third over first differences: noise has 3, a motion of 10 Hz without noise 0.1 at 200 Hz
@@ -30,8 +31,8 @@ class Faulty(NamedTuple):
     """Readings of a column that were made gaps.
 
     ``sensor``: marker, channel or transducer; ``column``: its name, with an axis unless all axes are gaps; ``kind``:
-    ``constant``, ``frozen``, ``clipped``, ``doubled`` or ``lost``; ``value`` that they have [m or m/s2]; ``p``: chance
-    of a faultless column like it; ``words``: what they do.
+    ``constant``, ``frozen``, ``clipped``, ``doubled``, ``dropped`` or ``lost``; ``value`` that they have [m or m/s2];
+    ``p``: chance of a faultless column like it; ``words``: what they do.
     """
 
     sensor: str
@@ -68,6 +69,33 @@ def stuck(values, unit="m"):
     return (known > _SHORTEST) & (low == np.fmax.reduce(values, axis=0)) & (np.abs(low) > _STUCK[unit])
 
 
+def dropouts(values):
+    """Readings of columns (n_times, n_columns), a mask, that are exactly 0 for a moment while those around stand off.
+
+    Loggers write so where a contact is lost: up to 9 zeros on end between readings of one sign, both farther from 0
+    than three times the steps that nearly all readings make.
+    """
+    dropped = np.zeros(values.shape, dtype=bool)
+    for column, own in enumerate(values.T):
+        zero = own == 0.0
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], zero.astype(int), [0]]))).reshape(-1, 2)
+        edges = edges[(edges[:, 0] > 0) & (edges[:, 1] < len(own)) & (np.diff(edges)[:, 0] < _SHORTEST)]
+        steps = np.abs(np.diff(own[~zero & np.isfinite(own)]))
+        if not len(edges) or not len(steps):
+            continue
+        usual = _DROP * np.quantile(steps, _NEARLY_ALL)
+        before, after = own[edges[:, 0] - 1], own[edges[:, 1]]
+        off = (np.sign(before) == np.sign(after)) & (np.minimum(np.abs(before), np.abs(after)) > usual)
+        for begin, end in edges[off]:
+            dropped[begin:end, column] = True
+    return dropped
+
+
+def dropped_words(rows, time):
+    """When a channel read 0, by the mask and the times of its readings (n_times,) [s]."""
+    return f"0 between readings far from it, first at {time[np.argmax(rows)]:.4g} s ({rows.sum()} in all)"
+
+
 def without_faulty(test, structure):
     """The test with such readings as gaps; a sensor without any other reading is left out.
 
@@ -91,6 +119,8 @@ def without_faulty(test, structure):
     faulty = list(test.attrs.get("faulty", ()))
     for readings, unit, columns, values in instruments(test):
         values, (clock, dimension, *_) = values.copy(), readings.dims
+        dropped = dropouts(values)
+        values[dropped] = np.nan
         names = [str(name) for name in readings[dimension].values]
         each = len(columns) // len(names)
         faults = _faults(values, _groups(names, each, dimension, structure), stuck(values, unit))
@@ -105,6 +135,9 @@ def without_faulty(test, structure):
             }[fault.kind]
             sensor = names[fault.column // each]
             faulty.append(Faulty(sensor, columns[fault.column], fault.kind, value, fault.p, words))
+        for column in np.flatnonzero(dropped.any(axis=0)):
+            words = dropped_words(dropped[:, column], test[clock].to_numpy())
+            faulty.append(Faulty(names[column // each], columns[column], "dropped", 0.0, 0.0, words))
         for fault in faults:
             values[fault.rows, fault.column] = np.nan
         test = test.assign({readings.name: readings.copy(data=values.reshape(readings.shape))})

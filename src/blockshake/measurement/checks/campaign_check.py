@@ -7,6 +7,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.geometry.structure_file import point_remarks
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.campaigns.commanded_motion import (
+    another_record_remarks,
     check_followed,
     command_target,
     commanded_motion,
@@ -107,6 +108,7 @@ class _Described:
 
     def __init__(self, campaign, structure, entry, test):
         self.sensors, self.structure, self.entry, self.test = campaign.sensors, structure, entry, test
+        self.campaign = campaign
         self.path = campaign.folder / entry.file
         self.time = test["time"].to_numpy()
         self.readings = test["marker_displacement"].to_numpy()
@@ -221,6 +223,7 @@ class _Described:
             self.remarks += driven_axis_remarks(self.slab)
             return
         self.remarks += length_remarks(self.time, commanded)
+        self.remarks += another_record_remarks(self.test, self.slab, self.campaign, self.entry)
         followed = follow(self.slab, self.target, self.slab_noise)
         if followed is None:
             self.facts.append("a command along x too small to be seen")
