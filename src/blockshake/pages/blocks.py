@@ -49,16 +49,26 @@ class Table:
 
 
 @dataclass(frozen=True)
+class Drawing:
+    """SVG text, ``width`` [m] in print."""
+
+    svg: str
+    width: float
+
+
+@dataclass(frozen=True)
 class Figure:
     """A drawing as SVG text, ``width`` [m] in print; ``number`` counts the figures of the document.
 
     ``moving``: JSON of blocks that move, which stand for the drawing on a screen; empty where the drawing stands.
+    ``left``: `Drawing` to its left, or above it on a narrow screen.
     """
 
     caption: str
     svg: str
     width: float = PAGE_WIDTH
     moving: str = ""
+    left: Drawing | None = None
     number: int = 0
     kind: str = field(default="figure", init=False)
 
@@ -74,7 +84,7 @@ class Listing:
 
 @dataclass(frozen=True)
 class Box:
-    """A sentence in a frame on the first page of a report, and three numbers under it.
+    """A sentence in a frame on the first page of a report, and two or three numbers under it.
 
     ``facts`` has for each number its label, the number with its unit, and a note.
     """

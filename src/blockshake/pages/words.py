@@ -18,6 +18,7 @@ from blockshake.pages.wording import (
 )
 
 _SMALL = 0.05  # mm, of a length that is printed as 0
+_FINEST = 0.005  # mm, of a difference of lengths that is printed as 0
 _WHOLE = 9.95  # mm, from which on a length is printed without decimals
 
 
@@ -32,6 +33,15 @@ def length(value):
         return MISSING
     digits = 0 if shown >= _WHOLE or shown < _SMALL else 1
     return f"{1e3 * float(value) if shown >= _SMALL else 0.0:.{digits}f}"
+
+
+def fine_length(value):
+    """A difference of lengths [m] in mm with two digits, 0 below 0.005 mm, which no marker reads.
+
+    >>> fine_length(0.0123), fine_length(5e-10), fine_length(float("nan"))
+    ('12', '0', 'none')
+    """
+    return "0" if abs(1e3 * float(value)) < _FINEST else number(1e3 * float(value), 2)
 
 
 def whole_percent(share):
@@ -53,6 +63,7 @@ _FILTERS = {
     "capital": lambda text: sentence_case(text)[:-1],
     "count": count_words,
     "either": either,
+    "fine_mm": fine_length,
     "given": given,
     "mm": length,
     "listed": listed,

@@ -32,15 +32,18 @@ def _embedded(text):
     return jinja2.filters.Markup(text.replace("<", "\\u003c"))
 
 
-def _picture(block):
-    """SVG of a figure to stand in the page: ids of its own, its caption for readers who hear it."""
-    own = f"figure-{block.number}-"
-    svg = re.sub(r'\bid="', f'id="{own}', block.svg)
+def _picture(block, left=False):
+    """SVG of a figure to stand in the page, or that to its left: ids of its own, a name for readers who hear it."""
+    drawing, own = (block.left, "left-") if left else (block, "")
+    own = f"figure-{block.number}-{own}"
+    svg = re.sub(r'\bid="', f'id="{own}', drawing.svg)
     svg = re.sub(r'href="#', f'href="#{own}', svg)
     svg = svg.replace("url(#", f"url(#{own}")
-    share = 100.0 * block.width / PAGE_WIDTH
+    millimetres, style = 1e3 * drawing.width, f"max-width: {100.0 * drawing.width / PAGE_WIDTH:.0f}%"
+    if block.left:  # shares of a row that they leave where both are no more legible
+        style = f"flex: {millimetres:.0f} 1 {3 * millimetres:.0f}px; max-width: min(100%, {6 * millimetres:.0f}px)"
     label = jinja2.filters.escape(f"Figure {block.number}")
-    start = f'<svg role="img" aria-label="{label}" style="max-width: {share:.0f}%" '
+    start = f'<svg role="img" aria-label="{label}" style="{style}" '
     return jinja2.filters.Markup(svg.replace("<svg ", start, 1))
 
 

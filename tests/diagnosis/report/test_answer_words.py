@@ -41,7 +41,7 @@ NOT_DISTINGUISHED = {
     "named": ("The other cause that was tried, an edge that changed", "160,000 times"),
     "ambiguous": ("Joint of low friction", "friction that falls with slip rate (4.5 times)", "20 times"),
     "unknown": (
-        "2 other causes are less probable",
+        "The nearest of 2 other causes is",
         "160,000 times",
         "block-2 or block-1",
         "most probably top of block-2",

@@ -123,9 +123,9 @@ def test_a_gain_on_forces_is_no_headline_where_that_on_responses_may_be_nothing(
 def test_a_gain_on_forces_alone_is_no_prediction(documents):
     """Nothing was simulated at quick effort; what the forces gain stands in the note."""
     _, value, note = documents["unknown"].sections[0].blocks[0].facts[2]
-    assert value == "not predicted"
+    assert value == "not simulated"
     assert note == (
-        "effort quick simulates no response; the forces read off the sealed tests: 80 % (70 to 90 %)"
+        "effort quick simulates no response; of the forces read off the sealed tests 80 % (70 to 90 %)"
     )
 
 

@@ -71,9 +71,9 @@ def test_every_pair_and_every_model_has_a_row(content):
 def test_pairs_beyond_chance_are_counted(content):
     case = content.cases[FIRST]
     case.differences["distance_chance"][:] = 0.0
-    assert "of all 6 pairs of models are farther apart" in case_words(case)
+    assert "6 of 6 pairs of models have ensembles farther apart" in case_words(case)
     case.differences["distance_chance"][:] = 1.0
-    assert "of none of 6 pairs of models are farther apart" in case_words(case)
+    assert "0 of 6 pairs of models have ensembles farther apart" in case_words(case)
     case.differences["distance_chance"][:] = np.nan
     assert f"{FIRST}: too few samples to tell the ensembles of any two models apart." in case_words(case)
 

@@ -87,7 +87,7 @@ def test_coverage_never_stands_alone(fake, text):
     compared = xr.load_dataset(fake.results / "comparisons" / "ls-dem" / "configuration-1.nc").sel(
         marker="block-2-face"
     )
-    reference = " / ".join(f"{100 * float(one):.1f}" for one in compared["reference"])
+    reference = " to ".join(f"{100 * float(end):.0f}" for end in compared["reference"][[0, -1]])
     chance = number(float(compared["curve_probability"]), 2)
     distance = number(float(compared["distance"]), 2)
     assert f"{100 * float(compared['coverage']):.1f} {reference} {distance} {chance}" in text

@@ -50,10 +50,10 @@ def made_up(share=0.6, correlation=-0.7, spread=0.01, level=0.3, shared=0.01):
 
 def test_the_dominating_variable_is_named_with_its_interval_and_the_level_of_chance():
     words = sentence(made_up(), "block-2", "high-face")
-    assert "differ by 10.0 mm" in words
-    assert "by itself: friction, concrete on concrete 0.60 [0.50, 0.70]; level of chance 0.30" in words
+    assert "differ by 10 mm" in words
+    assert "alone: friction, concrete on concrete 0.60 [0.50, 0.70] (share; chance reaches 0.30)" in words
     assert "follows friction, concrete on concrete -0.70 [-0.90, -0.50]" in words
-    assert "explain 42.0 % of the ranks" in words
+    assert "explain 42 % of the ranks" in words
     assert "viscous" not in words
 
 
@@ -61,12 +61,12 @@ def test_a_share_of_too_few_samples_for_limits_stands_without_them():
     few = made_up()
     few["first_order_interval"][:] = np.nan
     words = sentence(few, "block-2", "high-face")
-    assert "by itself: friction, concrete on concrete 0.60; level of chance 0.30" in words
+    assert "alone: friction, concrete on concrete 0.60 (share; chance reaches 0.30)" in words
 
 
 def test_nothing_is_named_within_chance():
     words = sentence(made_up(share=0.2, correlation=0.25), "block-2", "high-face")
-    assert "No variable is shown to explain any of that by itself" in words
+    assert "No variable is shown to explain any of that alone" in words
     assert "No variable is shown to steer the peak" in words
 
 
@@ -99,7 +99,7 @@ def test_models_by_which_nothing_is_explained_share_a_line_and_have_no_figure(fa
     items, figures = (
         [one for one in sensitivities(content).blocks if one.kind == kind] for kind in ("items", "figure")
     )
-    assert items[-1].items[0].startswith("LS-DEM: the samples of block-3 differ by 10.0 mm")
+    assert items[-1].items[0].startswith("LS-DEM: the samples of block-3 differ by 10 mm")
     assert len(figures) == 2
 
 
@@ -129,7 +129,7 @@ def test_figure_shows_every_variable_with_interval_and_level():
         (0.2, "no two variables have r squared beyond 0.05"),
         (
             -0.5,
-            "1 of 1 pairs of variables share their indices, r squared beyond 0.05: friction, concrete on concrete and "
+            "1 of 1 pair of variables shares its indices, r squared beyond 0.05: friction, concrete on concrete and "
             "viscous modulus of concrete, r -0.50",
         ),
         (np.nan, "too few completed samples for an index"),

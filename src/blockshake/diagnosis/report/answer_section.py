@@ -3,6 +3,7 @@
 import numpy as np
 
 from blockshake.diagnosis.gain.section import drift_figure
+from blockshake.diagnosis.report.size_section import meaning_words
 from blockshake.diagnosis.report.statement import (
     changed,
     not_distinguished,
@@ -11,7 +12,7 @@ from blockshake.diagnosis.report.statement import (
     until_then,
 )
 from blockshake.diagnosis.wording import NO_ERROR, chance_words, estimate_words, name_of, percent_words
-from blockshake.effects.registry import title_of
+from blockshake.effects.registry import EFFECTS, title_of
 from blockshake.pages.blocks import Box, Figure, Items, Section, Table, Text
 from blockshake.pages.drawing import BLACK, BLUE, LIGHT_GREY, new_figure, svg_of
 from blockshake.pages.units import printed
@@ -59,11 +60,14 @@ def _facts(diagnosed):
 def _size_fact(diagnosed):
     """Size of the most probable cause, or of a sensor's fault; without any how many effects have a limit everywhere."""
     decision, known = diagnosed.decision, diagnosed.verdict.parameters
-    causes = [(one.title, one.parameters) for one in (part.causes[0] for part in decision.parts)]
-    causes += [(title_of(name), known.get(name, {})) for name in sensor_faults(diagnosed)]
-    for title, parameters in causes:
+    causes = [(one.name, one.title, one.parameters) for one in (part.causes[0] for part in decision.parts)]
+    causes += [(name, title_of(name), known.get(name, {})) for name in sensor_faults(diagnosed)]
+    for effect, title, parameters in causes:
         for name, estimate in parameters.items():
-            return f"{sentence_case(name)[:-1]}: {title}", estimate_words(name, estimate), "90 % interval"
+            of_effect = EFFECTS[effect].parameters if effect in EFFECTS else ()
+            meanings = {one.name: meaning_words(one) for one in of_effect}
+            label = sentence_case(meanings.get(name, f"{name}, {title}"))[:-1]
+            return label, estimate_words(name, estimate), "90 % interval"
     count = f"{len(decision.excluded_above)} of {len(decision.probabilities)}"
     return "Effects excluded from some size on", count, "wherever they act; sizes in the table of limits"
 
@@ -73,7 +77,7 @@ def _gain_fact(diagnosed):
     label, verdict = "Error on sealed tests that the cause removes", diagnosed.verdict
     gain, forces = verdict.gain, verdict.row_gain and percent_words(verdict.row_gain.recalibrated)
     if gain is None and forces:
-        return label, "not predicted", _ANSWER.gain("forces", "", "", forces, diagnosed.effort == "quick")
+        return label, "not simulated", _ANSWER.gain("forces", "", "", forces, diagnosed.effort == "quick")
     if gain is None:
         reasons = [one for one in verdict.caveats if "gain was measured" in one]
         return label, "not measured", (reasons or ["nothing acts that could explain any"])[0]

@@ -9,7 +9,6 @@ from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.diagnosis.report.statement import RATIO
 from blockshake.diagnosis.wording import name_of, times_words
 from blockshake.pages.blocks import Section, Table, Text
-from blockshake.pages.wording import number
 from blockshake.pages.words import Words
 
 _COUNTED = Words(__name__)
@@ -36,7 +35,7 @@ def _table(part):
     for name in sorted(odds, key=odds.get):
         kind = "" if name is None else "form from outside" if name in FORMS else "effect"
         less = times_words(odds[name]) if odds[name] > 0.0 else "the most probable"
-        gain = number(part.gains[name]) if name else "0"
+        gain = f"{part.gains[name]:.1f}" if name else "0"
         rows.append((name_of(name) if name else "nothing", kind, less, gain))
     words = _COUNTED.table(part.readings, first.title, RATIO)
     return Table(words, ("Cause", "Kind", "Less probable", "Gain"), tuple(rows), "llrr")

@@ -64,6 +64,9 @@ def until_then(diagnosed):
         limits=sum(name not in verdict.causes for name in verdict.excluded_above),
         quick=diagnosed.effort == "quick",
         idle=simulated and not verdict.extension,
+        inspect=" and ".join(_places(diagnosed, one) for one in diagnosed.decision.causes if one.places)
+        if verdict.word == UNKNOWN
+        else "",
     )
 
 

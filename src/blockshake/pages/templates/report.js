@@ -4,7 +4,7 @@ document.querySelector("nav details").open = matchMedia("(min-width: 76rem)").ma
 // Every table can be saved as CSV, and every figure as SVG: what the page holds, and nothing from elsewhere.
 for (const figure of document.querySelectorAll("figure")) {
   const table = figure.querySelector("table");
-  const drawing = figure.querySelector("svg");
+  const drawing = figure.querySelector(":scope > svg, .parts svg:last-child");
   const name = figure.querySelector(".number").textContent.toLowerCase().replace(/\W+/g, "-").replace(/-$/, "");
   const button = document.createElement("button");
   button.type = "button";

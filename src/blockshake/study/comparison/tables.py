@@ -7,6 +7,7 @@ import numpy as np
 from blockshake.pages.blocks import Table, Text
 from blockshake.pages.rows import face_markers, top_markers
 from blockshake.pages.wording import MISSING, given, limited, millimetres, model_label, number, sentence_case
+from blockshake.pages.words import fine_length
 from blockshake.simulation.models import solver_of
 from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.comparison.comparison import CHANGES, MOST
@@ -72,9 +73,9 @@ def pairs_table(content):
             at = found.sel(model=own, other=other)
             floors = [found["floor"].sel(model=model) for model in (own, other)]
             rows.append((
-                stripe.name, f"{model_label(own)} and {model_label(other)}", in_millimetres(at["distance"]),
-                in_millimetres(at["distance_chance"]), limited(at, "history_difference", in_millimetres),
-                str(int(at["common"])), " / ".join(map(in_millimetres, floors)),
+                stripe.name, f"{model_label(own)} and {model_label(other)}", fine_length(at["distance"]),
+                fine_length(at["distance_chance"]), limited(at, "history_difference", fine_length),
+                str(int(at["common"])), " / ".join(map(fine_length, floors)),
                 _seconds(at["parting_time"], stripe.case),
             ))  # fmt: skip
     return Table(
@@ -163,11 +164,6 @@ def scores_table(content):
         f"none with fewer than {SURE_FROM} samples. {MISSING}: fewer than three samples.",
         ("Case", "Curves", *map(model_label, models), "Lowest"), tuple(rows), "ll" + "r" * len(models) + "l",
     )  # fmt: skip
-
-
-def in_millimetres(value):
-    """A difference [m] in mm with two digits: some are far smaller than any marker reads."""
-    return number(1e3 * value, 2)
 
 
 def _seconds(value, case):

@@ -6,7 +6,6 @@ from blockshake.pages.blocks import Figure, Heading, Table, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.wording import (
     MISSING,
-    count_words,
     limited,
     millimetre_range,
     model_label,
@@ -51,36 +50,37 @@ def cloud_blocks(content):
     return [
         Heading("Motions that the samples draw", "clouds"),
         Text(words),
-        Figure(
-            "Left: largest displacement of a marker from the slab, as a share of its limit, over the intensity, and "
-            "the regression; crosses: "
-            "samples that fell, at the upper edge. Right: probability of not passing by both methods, with limits of "
-            "95 %; squares: share of the samples at a level that do not pass, with limits of Clopper and Pearson. "
-            f"Dotted: {percent(SAFE)} %.",
-            svg_of(
-                plot_clouds, {f"{name}, {model_label(model)}": one for (name, model), one in clouds.items()}
-            ),
-        ),
+        *(_figure(name, clouds) for name in dict.fromkeys(name for name, _ in clouds)),
         _table(clouds),
     ]
+
+
+def _figure(name, clouds):
+    """Samples and fragilities of a case, a row a model."""
+    return Figure(
+        f"{name}. Left: largest displacement of a marker from the slab, as a share of its limit, over the intensity, "
+        "and the regression; crosses: samples that fell, at the upper edge. Right: probability of not passing by both "
+        "methods, with limits of 95 %; squares: share of the samples at a level that do not pass, with limits of "
+        f"Clopper and Pearson. Dotted: {percent(SAFE)} %.",
+        svg_of(
+            plot_clouds, {model_label(model): one for (case, model), one in clouds.items() if case == name}
+        ),
+    )
 
 
 def _table(clouds):
     rows = []
     for (name, model), cloud in clouds.items():
-        drawn = (
-            f"{count_words(cloud.sizes['sample'], 'sample')} of {count_words(cloud.attrs['records'], 'motion')}, "
-            f"{int(failed(cloud).sum())} not passed"
-        )
+        drawn = str(cloud.attrs["records"]), f"{int(failed(cloud).sum())} of {cloud.sizes['sample']}"
         measure = "{} [{}]".format(*measure_words(cloud))
         for method, label in _METHODS.items():
             one = cloud.sel(fit=method)
             figures = [limited(one, what) for what in ("median", "dispersion", "safe")]
-            rows.append((name, model_label(model), drawn, label, measure, *figures))
+            rows.append((name, model_label(model), *drawn, label, measure, *figures))
     return Table(
         f"Fragilities: intensity at which half and {percent(SAFE)} % of the samples do not pass, and dispersion, with "
         "limits of 95 % in brackets: of the regression by its parameters' posterior, of the counts by likelihood. "
         f"{MISSING.capitalize()}: the samples do not tell.",
-        ("Case", "Model", "Samples", "Method", "Intensity", "Median", "Dispersion", f"{percent(SAFE)} %"),
-        tuple(rows), "lllllrrr",
+        ("Case", "Model", "Motions", "Not passed", "Method", "Intensity", "Median", "Dispersion", f"{percent(SAFE)} %"),
+        tuple(rows), "llrrllrrr",
     )  # fmt: skip

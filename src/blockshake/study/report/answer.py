@@ -3,7 +3,7 @@
 import numpy as np
 
 from blockshake.dynamics.system import FALLEN
-from blockshake.pages.blocks import Box, Figure, Heading, Items, Section, Table, Text
+from blockshake.pages.blocks import Box, Drawing, Figure, Heading, Items, Section, Table, Text
 from blockshake.pages.drawing import svg_of
 from blockshake.pages.wording import (
     MISSING,
@@ -19,9 +19,8 @@ from blockshake.simulation.models import solver_of
 from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.comparison.paired import models_apart, theory_of
 from blockshake.study.ensembles.coverage import is_likely
-from blockshake.study.ensembles.envelope import STILL
 from blockshake.study.limit_states.section import worst_of_each
-from blockshake.study.report.answer_figure import plot_answer
+from blockshake.study.report.answer_figure import CURVES, plot_answer, plot_structures, structures_width
 from blockshake.study.report.case_outcomes import evidence, most_telling, outcomes
 from blockshake.study.report.open_questions import MOST, next_steps, unknown
 from blockshake.study.sensitivity.findings import motion_sentences
@@ -30,7 +29,7 @@ _WORDS = Words(__name__)
 
 
 def answer(content):
-    """Verdict, three numbers, structure and displacement, a row a case, differences, gaps and next steps: a page."""
+    """Verdict, two numbers, structure and displacement, a row a case, differences, gaps and next steps: a page."""
     stripes = content.stripes
     named = {one.name: one for one in stripes}
     found = {one.name: ended for one in stripes if (ended := outcomes(one))}
@@ -125,14 +124,12 @@ def _verdict(content, found):
 
 
 def _facts(stripes, found, shown, theory):
-    """The three numbers of the box: displacement and margin of the median run, and collapses."""
+    """The two numbers of the box: displacement and margin of the median run."""
     levels = [one.name for one in stripes if one.case is shown.case and one.name in found]
     used = {name: _used(found[name], theory.get(name)) for name in levels}
     of_case = [one for ended in used.values() for one in ended.values()]
     far = max(of_case, key=lambda one: one.most)
     near = min(of_case, key=lambda one: np.nan_to_num(one.least_margin, nan=np.inf))
-    every = {(name, model): one for name in found for model, one in evidence(found[name]).items()}
-    (worst, model), fell = max(every.items(), key=lambda item: (item[1].share, item[1].limits[1]))
     case = {
         "name": shown.case.name,
         "models": list(dict.fromkeys(model for ended in used.values() for model in ended)),
@@ -148,21 +145,14 @@ def _facts(stripes, found, shown, theory):
 
     return (
         (
-            "Largest displacement on the slab, median run",
+            "Largest displacement on the slab, median run by model",
             by_level("peak", length, "mm"),
             _WORDS.displacement(case=case, one=far),
         ),
         (
-            "Margin against overturning, median run",
+            "Margin against overturning, median run by model",
             by_level("margin", whole_percent, "%") if near.over else MISSING,
             _WORDS.margin(case=case, one=near, worst=_margin(near.least_margin), leaves=_leaves(of_case)),
-        ),
-        (
-            "Runs that collapse",
-            _WORDS.collapses(one=fell, total=sum(one.counted for one in every.values())),
-            _WORDS.probability(
-                one=fell, place=worst, model=model, several=len(found) > 1, levels=len(levels) > 1
-            ),
         ),
     )
 
@@ -185,7 +175,7 @@ def _table(stripes, found):
             name, model_label(model), f"{one.collapsed} of {one.counted}",
             f"{whole_percent(one.limits[0])} to {whole_percent(one.limits[1])}" if one.is_sure else "too few runs",
             length(one.peak), span((one.least, one.most)) if one.counted > 1 else "one run",
-            _margins(one),
+            _margin(one.margin), _margin(one.least_margin),
             "" if one.collapsed else length(one.end) if np.isfinite(one.end) else "moves", one.block,
         )
         for name, ended in found.items()
@@ -198,30 +188,30 @@ def _table(stripes, found):
             few=SURE_FROM if len(rows) < sum(map(len, found.values())) else 0,
         ),
         (
-            "Case", "Model", "Collapsed", "Probability [%]", "Median [mm]", "All runs [mm]", "Margin [%]", "Left [mm]",
-            "Block",
+            "Case", "Model", "Collapsed", "Probability [%]", "Median [mm]", "All runs [mm]", "Margin [%]", "Worst [%]",
+            "Left [mm]", "Block",
         ),
-        tuple(rows), "llrrrrrrl", (1.9, 1.5, 1.1, 1.2, 1.0, 1.3, 1.1, 0.8, 1.2),
+        tuple(rows), "llrrrrrrrl", (1.9, 1.4, 1.1, 1.2, 0.9, 1.2, 0.8, 0.7, 0.7, 1.2),
     )  # fmt: skip
-
-
-def _margins(one):
-    """Margin of the median run, and of the worst in brackets where it is another."""
-    both = dict.fromkeys((_margin(one.margin), _margin(one.least_margin)))
-    return " (".join(both) + ")" * (len(both) - 1) if np.isfinite(one.margin) else MISSING
 
 
 def _margin(least):
     """A margin against overturning in percent; beyond the edge it has no size that tells anything."""
-    return whole_percent(least) if least >= 0.0 else "over"
+    return MISSING if np.isnan(least) else whole_percent(least) if least >= 0.0 else "over"
 
 
 def _figure(content, found, shown):
     one = max(found[shown.name].values(), key=lambda ended: ended.peak)
-    structures = {case.settings["structure"]: case.structure for case in content.cases.values()}
+    structures = list(
+        {case.settings["structure"]: case.structure for case in content.cases.values()}.values()
+    )
     return Figure(
-        _WORDS.figure(case=shown.case, one=one, still=STILL),
-        svg_of(plot_answer, list(structures.values()), shown.case, one.marker),
+        _WORDS.figure(case=shown.case, one=one),
+        svg_of(plot_answer, shown.case, one.marker),
+        CURVES,
+        left=Drawing(
+            svg_of(plot_structures, structures, shown.case, one.marker), structures_width(structures)
+        ),
     )
 
 

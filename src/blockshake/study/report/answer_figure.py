@@ -1,6 +1,7 @@
 """Picture of the first page: the structures, and the block that moves farthest by every model."""
 
 import numpy as np
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from blockshake.dynamics.system import FALLEN
 from blockshake.measurement.sensors.markers import marker_position
@@ -10,23 +11,20 @@ from blockshake.pages.scene.structure_picture import draw_blocks
 from blockshake.pages.wording import model_label
 
 _COLORS = (BLUE, ORANGE, GREEN, RED)
-_HEIGHT = 0.036  # m of paper
+CURVES = 0.105  # m of paper, width of the curves
+_HEIGHT = 0.042  # m, of the curves
+_STRUCTURE = 0.016, 0.024  # m, width and height of a structure
 _BETWEEN = 0.02  # of a level, between models drawn at it
 _LEAST = 0.1  # mm, drawn for all that moves less
-_IN_A_ROW, _CURVES = 4, 6.0  # structures, and width of the curves over that of one
+_IN_A_ROW = 4  # structures
 
 
-def plot_answer(structures, case, marker):
-    """Figure of structures in space, and of a marker's displacement along x relative to the slab.
-
-    ``structures``: list of `Structure`; ``case``: `ReportedCase`, whose structure is among them. By model, the median
-    of the samples and a band from the smallest to the largest at each time; the measured curve is dashed. Where the
-    samples are scaled to levels, the largest displacement of each of them over the level.
-    """
-    figure = new_figure(_HEIGHT)
+def plot_structures(structures, case, marker):
+    """Figure of a list of `Structure` in space, with a marker of that of a `ReportedCase` among them."""
     across = min(len(structures), _IN_A_ROW)
-    left, right = figure.subfigures(1, 2, width_ratios=[across, _CURVES])
-    drawn = left.subplots(-(-len(structures) // across), across, squeeze=False)
+    rows = -(-len(structures) // across)
+    figure = new_figure(_STRUCTURE[1] * rows, structures_width(structures))
+    drawn = figure.subplots(rows, across, squeeze=False)
     for axes in drawn.flat:
         axes.set_axis_off()
     for axes, structure in zip(drawn.flat, structures, strict=False):
@@ -38,23 +36,29 @@ def plot_answer(structures, case, marker):
             axes.plot(
                 at[0], at[1], "o", color=RED, markersize=3.5, markeredgecolor="white", markeredgewidth=0.5
             )
-        axes.text(
-            0.5, 0.0, structure.file.name, transform=axes.transAxes, ha="center", va="top", fontsize=5.5
-        )
+        axes.text(0.5, 0.0, structure.file.name, transform=axes.transAxes, ha="center", va="top", fontsize=6)
         axes.set(aspect="equal", anchor="S")
         axes.autoscale_view()
-    curves = right.subplots()
-    if case.levels:
-        _draw_levels(curves, case, marker)
-    else:
-        _draw_histories(curves, case, marker)
-    right.legend(
-        *curves.get_legend_handles_labels(),
-        loc="outside upper right",
-        ncols=5,
-        fontsize=6.0,
-        handlelength=1.2,
-        columnspacing=0.8,
+    return figure
+
+
+def structures_width(structures):
+    """Width of `plot_structures` [m]."""
+    return _STRUCTURE[0] * max(2, min(len(structures), _IN_A_ROW))
+
+
+def plot_answer(case, marker):
+    """Figure of a marker's displacement along x relative to the slab, of a `ReportedCase`.
+
+    By model the median of the samples, and a band from the smallest to the largest at each time; the measured curve is
+    dashed. Where the samples are scaled to levels, the largest displacement of each of them over the level.
+    """
+    figure = new_figure(_HEIGHT, CURVES)
+    curves = figure.subplots()
+    (_draw_levels if case.levels else _draw_histories)(curves, case, marker)
+    handles = curves.get_legend_handles_labels()
+    figure.legend(
+        *handles, loc="outside upper center", ncols=5, fontsize=6.5, handlelength=1.2, columnspacing=0.8
     )
     return figure
 
@@ -75,7 +79,9 @@ def _draw_levels(axes, case, marker):
     axes.set(xlabel=f"{name} [{case.level_unit}]", ylabel="largest [mm]", xscale="log", yscale="log")
     axes.set_xticks(levels, [f"{one:g}" for one in levels])
     axes.set_xticks([], minor=True)
+    axes.yaxis.set_major_locator(LogLocator(numticks=4))
     axes.yaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_formatter(NullFormatter())
 
 
 def _draw_histories(curves, case, marker):

@@ -12,9 +12,8 @@ from blockshake.pages.wording import (
     number,
     percent,
     quantile_percent,
-    quantile_range,
 )
-from blockshake.pages.words import Words, length, span
+from blockshake.pages.words import Words, length, span, whole_percent
 from blockshake.simulation.run_histories import RARELY
 from blockshake.study.comparison.tables import block_tables
 from blockshake.study.ensembles.displacement_figure import plot_displacements
@@ -117,13 +116,12 @@ def coverage_table(case):
             at = one.comparison.sel(marker=marker)
             if np.isfinite(at["coverage"]):  # not of too few samples
                 rows.append((
-                    body, model_label(model), percent(at["coverage"]), quantile_range(at["reference"], percent),
+                    body, model_label(model), percent(at["coverage"]), span(at["reference"].values, whole_percent),
                     number(float(at["distance"]), 2), number(float(at["curve_probability"]), 2),
                 ))  # fmt: skip
     word = "virtual test" if case.synthetic else "measured curve"
-    quantiles = " / ".join(f"{100 * one:.0f}" for one in SHOWN_QUANTILES)
     return Table(
-        _RESULTS.coverage(case, word, quantiles),
+        _RESULTS.coverage(case, word, SHOWN_QUANTILES[0], SHOWN_QUANTILES[-1]),
         ("Block", "Model", f"Coverage of the {word} [%]", "Reference, leave one out [%]", "Distance", "Chance"),
         tuple(rows), "llrrrr",
     )  # fmt: skip

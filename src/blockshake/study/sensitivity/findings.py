@@ -5,21 +5,12 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.pages.rows import bodies_by_height, face_markers
-from blockshake.pages.wording import listed, millimetres, model_label, parameter_label, percent
-from blockshake.pages.words import span, whole_percent
+from blockshake.pages.words import Words, span, whole_percent
 from blockshake.study.ensembles.envelope import STILL
 
 SHARED = 0.05  # r squared of two variables beyond which they are said to share their indices
 _MOST_NAMED = 3  # pairs of such variables
-_WORDS = {
-    "first_order": (
-        "Shown to explain some of that by itself:", "No variable is shown to explain any of that by itself", "share",
-    ),
-    "rank_correlation": (
-        "By partial rank correlation the peak follows", "No variable is shown to steer the peak",
-        "partial rank correlation",
-    ),
-}  # fmt: skip
+_FOUND = Words(__name__)
 
 
 class Influence(NamedTuple):
@@ -72,13 +63,8 @@ def shared_words(result):
         return "too few completed samples for an index"
     pairs = [*zip(*np.triu_indices(len(names), 1), strict=True)]
     shared = sorted((pair for pair in pairs if known[pair] ** 2 > SHARED), key=lambda pair: -abs(known[pair]))
-    if not shared:
-        return f"no two variables have r squared beyond {SHARED}"
-    named = "; ".join(
-        f"{parameter_label(names[one])} and {parameter_label(names[other])}, r {known[one, other]:.2f}"
-        for one, other in shared[:_MOST_NAMED]
-    )
-    return f"{len(shared)} of {len(pairs)} pairs of variables share their indices, r squared beyond {SHARED}: {named}"
+    named = [(str(names[one]), str(names[other]), float(known[one, other])) for one, other in shared]
+    return _FOUND.shared(bool(np.isfinite(known).all()), len(pairs), named, SHARED, _MOST_NAMED)
 
 
 def quiet_markers(result, markers, noise):
@@ -100,36 +86,18 @@ def sentence(result, body, marker):
 
     ``result`` from `sensitivity`, of samples that differ.
     """
-    history = result.sel(quantity="history", marker=marker)
-    thick = f"the samples of {body} differ by {millimetres(history['spread'])} mm"
-    words = f"{thick} (standard deviation over samples and time). {_found(history, 'first_order')}"
-    peak = result.sel(quantity="peak", marker=marker)
-    if not is_known(peak, "rank_correlation"):
-        return (
-            f"{words} {int(peak['used'])} samples are too few for partial correlations of so many variables."
-        )
-    explained = float(peak["explained"])
-    share = f"{percent(explained)} %" if explained > 0.0 else "nothing"
-    return (
-        f"{words} {_found(peak, 'rank_correlation')} All variables together explain {share} of the ranks of the peak "
-        f"(adjusted R\N{SUPERSCRIPT TWO} {explained:.2f})."
-    )
+    history, peak = (result.sel(quantity=one, marker=marker) for one in ("history", "peak"))
+    steered = ""
+    if is_known(peak, "rank_correlation"):
+        steered = _FOUND.steered(*_ranked(peak, "rank_correlation"), float(peak["explained"]))
+    alone = _FOUND.alone(*_ranked(history, "first_order"))
+    return _FOUND.spread(body, float(history["spread"]), alone, steered, int(peak["used"]))
 
 
-def _found(result, measure):
-    """Variables whose measure is beyond chance, or the largest measure where there is none, in a sentence."""
-    ranked, (shown, hidden, noun) = influences(result, measure), _WORDS[measure]
-    chance = f"{float(result[f'{measure}_chance']):.2f}"
-    if named := ", then ".join(influence_words(one) for one in ranked if one.beyond_chance):
-        return f"{shown} {named}; level of chance {chance}."
-    return f"{hidden}: the largest {noun}, {influence_words(ranked[0])}, is within the level of chance, {chance}."
-
-
-def influence_words(one):
-    """One variable, marked if it is a control, with its measure and, where the samples suffice for one, interval."""
-    control = ", a control" if one.control else ""
-    limits = f" [{one.lower:.2f}, {one.upper:.2f}]" if np.isfinite([one.lower, one.upper]).all() else ""
-    return f"{parameter_label(one.parameter)}{control} {one.value:.2f}{limits}"
+def _ranked(result, measure):
+    """`influences`, those of them beyond chance, and the level of chance."""
+    ranked = influences(result, measure)
+    return ranked, [one for one in ranked if one.beyond_chance], float(result[f"{measure}_chance"])
 
 
 def explained_by_motion(case):
@@ -165,9 +133,6 @@ def motion_sentences(content):
     for name, case in content.cases.items():
         if shares := explained_by_motion(case):
             known = span(shares.values(), whole_percent)
-            alike.setdefault((known, listed([*map(model_label, shares)])), []).append(name)
-    for (known, models), names in alike.items():
-        yield (
-            f"{listed(names)}: record and level explain {known} % of the spread of the largest displacement "
-            f"({models}). The sampled properties explain at most the rest."
-        )
+            alike.setdefault((known, *shares), []).append(name)
+    for (known, *models), names in alike.items():
+        yield _FOUND.motion(names, known, models)

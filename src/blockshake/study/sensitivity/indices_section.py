@@ -3,8 +3,10 @@
 import numpy as np
 
 from blockshake.pages.blocks import Section, Table, Text
-from blockshake.pages.wording import MISSING, model_label, number, parameter_label
+from blockshake.pages.wording import MISSING, model_label, number
+from blockshake.pages.words import Words
 
+_OF_VARIANCE = Words(__name__)
 _SHARES_SHOWN = 3  # variables of a response
 
 
@@ -19,16 +21,9 @@ def shares(content):
                     rows.append((stripe.name, model_label(model), str(output), *_row(one)))
     if not rows:
         return None
-    words = (
-        "Shares of the variance of a response, by a Gaussian process through its runs. Shapley effects sum to 1 and "
-        "part what variables that depend on each other explain together (Owen 2014). The total Sobol index, of "
-        "independent variables alone, holds all interactions. Brackets: 95 %, of the surrogate's error and of the "
-        "sampling. The surrogate's quality is the share of the variance that it predicts of runs left out one by one, "
-        "and of every fifth run by the others. Below 0.7, as near a collapse, the shares cannot be determined."
-    )
     heads = ("Case", "Model", "Response", "Left out", "Held out", "Shapley effects", "Total indices")
     return Section("Shares of the variables", "shares", (
-        Text(words), Table("The three largest shares of each response.", heads, tuple(rows), "lllrrll"),
+        Text(_OF_VARIANCE.method()), Table(_OF_VARIANCE.table(), heads, tuple(rows), "lllrrll"),
     ))  # fmt: skip
 
 
@@ -42,10 +37,6 @@ def _row(one):
 
 def _largest(one, name):
     values, limits = one[name].to_numpy(), one[f"{name}_interval"].transpose("parameter", "bound").to_numpy()
-    if np.isnan(values).all():
-        return "variables depend on each other"
-    return "; ".join(
-        f"{parameter_label(str(one['parameter'].values[place]))} {values[place]:.2f} "
-        f"[{limits[place, 0]:.2f}, {limits[place, 1]:.2f}]"
-        for place in np.argsort(-values, kind="stable")[:_SHARES_SHOWN]
-    )
+    order = [] if np.isnan(values).all() else np.argsort(-values, kind="stable")[:_SHARES_SHOWN]
+    names = one["parameter"].values
+    return _OF_VARIANCE.largest([(str(names[at]), values[at], *limits[at]) for at in order])
