@@ -6,11 +6,16 @@ import subprocess
 import sys
 
 import jsonschema
+import numpy as np
 import pytest
+import xarray as xr
 
 from blockshake.cli import main
 from blockshake.files import HOME, load_yaml
+from blockshake.geometry.structure import load_structure
+from blockshake.measurement.motion.body_poses import PLANAR, body_poses
 from blockshake.own_files.commands import file_schema
+from blockshake.own_files.templates import write_template
 
 SHIPPED = {
     "structure": [*HOME.glob("config/structures/*.yaml"), HOME / "config/templates/structure.yaml"],
@@ -35,6 +40,16 @@ def test_a_template_is_right_as_it_stands(kind, name, tmp_path, capsys, monkeypa
     assert main(["new", kind, name]) == 2
     assert "nothing is overwritten" in capsys.readouterr().err
     assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before
+
+
+def test_the_markers_of_the_template_show_the_pose_of_every_block(tmp_path):
+    """Without it `plan-campaign` of the template, as in the README, is refused: no effect would show."""
+    write_template("structure", tmp_path / "my.yaml")
+    structure = load_structure(tmp_path / "my.yaml")
+    names = [marker.name for marker in structure.file.markers]
+    still = xr.DataArray(np.zeros((9, len(names), 3)), {"marker": names}, ("time", "marker", "axis"))
+    known = np.array(body_poses(xr.Dataset({"marker_displacement": still}), structure, 1e-4).known)
+    assert set(known[~structure.driven]) == {PLANAR}
 
 
 def test_a_study_is_named_after_its_file(tmp_path):

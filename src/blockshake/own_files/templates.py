@@ -11,7 +11,7 @@ from blockshake.files import read_text, replacing_folder, shipped, write_text
 
 STRUCTURE, STUDY, CAMPAIGN = "structure", "study", "campaign"
 _MOTION = "alkion"
-_MARKERS = ("slab-lvdt", "block-1-lvdt", "block-2-lvdt")
+_MARKERS = ("slab-lvdt", *(f"block-{block}-{place}" for block in (1, 2) for place in ("lvdt", "foot")))
 _READING_RATE, _DURATION, _NOISE = 100.0, 12.0, 1e-4  # Hz, s, m
 
 
