@@ -60,3 +60,14 @@ def prism(outline, height, cap):
         np.stack([low, high[after], high], axis=1),
     ]
     return np.concatenate([low[cap[:, ::-1]], high[cap], *walls])
+
+
+def l_shape():
+    """An L of two boxes, 1 x 1 x 1 with a quarter taken out: vertices and outward triangles."""
+    outline = np.array([[0, 0], [1, 0], [1, 0.5], [0.5, 0.5], [0.5, 1], [0, 1]])
+    vertices = np.vstack([np.column_stack([outline, np.full(6, z)]) for z in (0.0, 1.0)])
+    cap = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 5], [3, 4, 5]])
+    walls = [[k, (k + 1) % 6, 6 + (k + 1) % 6] for k in range(6)] + [
+        [k, 6 + (k + 1) % 6, 6 + k] for k in range(6)
+    ]
+    return vertices, np.vstack([cap[:, ::-1], cap + 6, walls])

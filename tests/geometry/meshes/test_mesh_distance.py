@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 import trimesh
+from solid_angles import l_shape
 
 from blockshake.geometry.meshes.mesh_distance import lattice_distances
 
@@ -21,23 +22,11 @@ def _box_outside(points, low, high):
     return np.linalg.norm(np.maximum(np.maximum(low - points, points - high), 0.0), axis=-1)
 
 
-@pytest.fixture
-def l_shape():
-    """An L of two boxes, 1 x 1 x 1 with a quarter taken out: vertices and outward triangles."""
-    outline = np.array([[0, 0], [1, 0], [1, 0.5], [0.5, 0.5], [0.5, 1], [0, 1]])
-    vertices = np.vstack([np.column_stack([outline, np.full(6, z)]) for z in (0.0, 1.0)])
-    cap = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 5], [3, 4, 5]])
-    walls = [[k, (k + 1) % 6, 6 + (k + 1) % 6] for k in range(6)] + [
-        [k, 6 + (k + 1) % 6, 6 + k] for k in range(6)
-    ]
-    return vertices, np.vstack([cap[:, ::-1], cap + 6, walls])
-
-
-def test_a_non_convex_shape(l_shape):
+def test_a_non_convex_shape():
     """Outside, the distance to a union is the smaller one; the sign is membership in either box."""
     axes = _axes(-0.5, 1.5, 41)
     points = _points(axes)
-    values = lattice_distances(*l_shape, axes)
+    values = lattice_distances(*l_shape(), axes)
     one = _box_outside(points, np.zeros(3), np.array([1.0, 0.5, 1.0]))
     other = _box_outside(points, np.zeros(3), np.array([0.5, 1.0, 1.0]))
     outside = np.minimum(one, other)
@@ -45,7 +34,7 @@ def test_a_non_convex_shape(l_shape):
     np.testing.assert_allclose(values[outside > 0.0], outside[outside > 0.0], atol=ROUNDING)
     # inside, next to the re-entrant edge, the nearest point is on that edge
     x, y, z = np.array([0.45]), np.array([0.47]), np.array([0.5])
-    inside = lattice_distances(*l_shape, (x, y, z))
+    inside = lattice_distances(*l_shape(), (x, y, z))
     assert inside[0, 0, 0] == pytest.approx(-np.hypot(0.05, 0.03), abs=ROUNDING)
 
 
@@ -90,9 +79,9 @@ def test_a_sharp_tip_has_the_right_sign_all_around():
         assert value[0, 0, 0] > 0.0
 
 
-def test_a_flat_triangle_on_an_edge_changes_nothing(l_shape):
+def test_a_flat_triangle_on_an_edge_changes_nothing():
     """Meshes from scans and CAD have them: one edge is split at its middle on one side only."""
-    vertices, faces = l_shape
+    vertices, faces = l_shape()
     a, b, c = faces[0]
     other = next(t for t in range(1, len(faces)) if {a, b} <= set(faces[t]))
     middle = len(vertices)

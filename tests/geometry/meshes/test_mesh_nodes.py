@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 import trimesh
 from scipy.spatial import ConvexHull, cKDTree
+from solid_angles import l_shape
 
 from blockshake.geometry.meshes.mesh_distance import lattice_distances
 from blockshake.geometry.meshes.mesh_nodes import mesh_nodes
@@ -81,13 +82,7 @@ def test_a_face_finer_meshed_gets_the_same_nodes_roughly():
 
 
 def test_sharp_convex_edges_have_nodes_on_both_sides_and_reentrant_ones_none():
-    outline = np.array([[0, 0], [1, 0], [1, 0.5], [0.5, 0.5], [0.5, 1], [0, 1]])
-    vertices = np.vstack([np.column_stack([outline, np.full(6, z)]) for z in (0.0, 1.0)])
-    cap = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 5], [3, 4, 5]])
-    walls = [[k, (k + 1) % 6, 6 + (k + 1) % 6] for k in range(6)] + [
-        [k, 6 + (k + 1) % 6, 6 + k] for k in range(6)
-    ]
-    faces = np.vstack([cap[:, ::-1], cap + 6, walls])
+    vertices, faces = l_shape()
     points, areas = mesh_nodes(vertices, faces, 0.2, INSET)
     assert areas.sum() == pytest.approx(2 * 0.75 + 4.0, rel=1e-9)
     np.testing.assert_allclose(_depth(points, (vertices, faces)), 0.0, atol=1e-12)
@@ -97,7 +92,7 @@ def test_sharp_convex_edges_have_nodes_on_both_sides_and_reentrant_ones_none():
             np.abs(points[:, 2] - 0.5) < 0.45
         )
 
-    for x, y in outline:
+    for x, y in vertices[:6, :2]:
         reentrant = (x, y) == (0.5, 0.5)
         assert beside(x, y).any() != reentrant
     # a corner's three faces each have a node at the inset from both edges; breadths 0.75 / 2, 1 / 2 and 1 / 3 m

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from cut_runs import CutShortError, assert_same, cut_after
+from cycle_of_sine import cycle
 
 from blockshake.dynamics.motion import ground_motion
 from blockshake.simulation.energy_residual import energy_residual
@@ -13,19 +14,10 @@ from blockshake.solvers.nscd_deformable.driver import simulate_deformable
 COARSE = {"mesh_size": 0.4, "contact_spacing": 0.8}
 
 
-def _cycle(acceleration, frequency, until):
-    """One cycle of a sine along x."""
-    time = np.linspace(0.0, 1.0 / frequency, 201)
-    a = acceleration * np.sin(2.0 * np.pi * frequency * time)
-    return ground_motion(
-        "cycle", np.append(time, [time[-1] + 1e-6, until]), {"x": np.append(a, [0.0, 0.0])}, "acceleration"
-    )
-
-
 @pytest.fixture(scope="module")
 def rocking(stone, tower):
     """Two blocks that rock under one cycle of 2 Hz."""
-    return stone(tower(2)), _cycle(4.0, 2.0, 3.0)
+    return stone(tower(2)), cycle(4.0, 2.0, 3.0)
 
 
 def test_stiff_blocks_move_like_rigid_ones(rocking, stone, tower, deform):

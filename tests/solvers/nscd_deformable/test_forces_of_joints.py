@@ -2,21 +2,11 @@
 
 import numpy as np
 import pytest
-
-from blockshake.dynamics.motion import ground_motion
+from cycle_of_sine import cycle
 
 STEP = 1e-3
 FRICTION = 0.3
 G = 9.81
-
-
-def cycle(acceleration, frequency, until):
-    """One cycle of a sine along x."""
-    time = np.linspace(0.0, 1.0 / frequency, 201)
-    a = acceleration * np.sin(2.0 * np.pi * frequency * time)
-    return ground_motion(
-        "cycle", np.append(time, [time[-1] + 1e-6, until]), {"x": np.append(a, [0.0, 0.0])}, "acceleration"
-    )
 
 
 @pytest.fixture(scope="module", params=[False, True], ids=["elastic", "viscoelastic"])
