@@ -207,7 +207,7 @@ def test_a_spreadsheet_of_readings_goes_in(names, tmp_path):
             "time_s,slab-face.x\n\n0,0\n0.1,far\n",
             "line 4, slab-face.x: expected a number with a decimal point, or nothing, not 'far'",
         ),
-        ("time_s,slab-face.x\n0,0\n0.1,0,0\n", "line 3: expected at most 2 cells, found 3"),
+        ("time_s,slab-face.x\n0,0\n0.1,0,0\n", "line 3: expected at most 2 cells as in line 1, found 3"),
         (
             'time_s,slab-face.x\n0,"0\n0.1,0\n',
             "line 3: expected cells between ','; unexpected end of data",
