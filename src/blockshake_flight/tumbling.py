@@ -5,8 +5,9 @@ from functools import lru_cache
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from blockshake.dynamics.free_turning import free_turning
+
 _NEWTON_STEPS = 3  # of Gauss and Newton
-_STEPS = 2  # between two readings
 _CHANGE = 1e-4  # rad; share of the momentum: by which the path's derivative is found
 _ROUND = 1e-9  # of the inertia, within which it is alike about all axes
 
@@ -65,13 +66,8 @@ def _turned(starts, momenta, inertia, time):
             Rotation.from_rotvec(time[:, None] * (inverse @ momentum)) * start
             for start, momentum in zip(starts, momenta, strict=True)
         ]
-    turned, found = starts, [starts.as_matrix()]
-    for step in np.diff(time) / _STEPS:
-        for _ in range(_STEPS):
-            half = Rotation.from_rotvec(0.5 * step * _spins(turned, momenta, inverse)) * turned
-            turned = Rotation.from_rotvec(step * _spins(half, momenta, inverse)) * turned
-        found.append(turned.as_matrix())
-    return [Rotation.from_matrix(path) for path in np.swapaxes(found, 0, 1)]
+    paths = free_turning(starts.as_quat(scalar_first=True), momenta, inverse, time)
+    return [Rotation.from_quat(path, scalar_first=True) for path in paths]
 
 
 def _spins(turned, momenta, inverse):

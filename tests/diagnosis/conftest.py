@@ -15,3 +15,9 @@ def two_blocks(tmp_path_factory):
     path = tmp_path_factory.mktemp("two") / "two.yaml"
     path.write_text(yaml.safe_dump(mapping, sort_keys=False), encoding="utf-8")
     return str(path)
+
+
+@pytest.fixture
+def without_limits(monkeypatch):
+    """Decisions without the limits of causes, half of their time, on which no decision depends."""
+    monkeypatch.setattr("blockshake.diagnosis.answer.decide.limits_of", lambda *_: {})

@@ -11,7 +11,7 @@ DATA = PACKAGE.parents[1] / "data" / "virtual-campaign"
 MOST_BYTES = 20e6
 
 
-@pytest.mark.parametrize("number", [1, 2, 3, 4])
+@pytest.mark.parametrize("number", [1, 2, *(pytest.param(wall, marks=pytest.mark.slow) for wall in (3, 4))])
 def test_it_passes_through_the_reader(number):
     folder = DATA / f"configuration-{number}"
     campaign = load_campaign(folder)

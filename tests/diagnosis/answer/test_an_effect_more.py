@@ -50,5 +50,6 @@ def test_it_is_named_with_its_size_and_extends_the_model(seen):
     assert {one.asymmetry for one in extended.structure.file.friction} == {cause.members[3]["asymmetry"]}
 
 
+@pytest.mark.usefixtures("without_limits")
 def test_without_its_file_nothing_is_named(seen):
     assert decide(seen, (EFFECT.name,)).decision.causes == ()

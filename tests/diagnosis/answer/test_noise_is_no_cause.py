@@ -12,6 +12,7 @@ from blockshake.diagnosis.evidence.joint_rows import JointRows
 from blockshake.forces.seen.wrench_histories import force_at
 from blockshake.measurement.sensors.instruments import Instruments, SlowNoise
 
+pytestmark = pytest.mark.usefixtures("without_limits")
 MOTIONS = {"first": ("alkion", 2.5), "second": ("basso-tirreno", 2.0), "third": ("alkion", 3.0)}
 STRUCK, AT = 2, 1.0  # number of a test, s
 SLOW = SlowNoise(share=0.3, memory=0.1)

@@ -79,9 +79,10 @@ def test_samples_without_an_answer_and_gaps_have_no_part():
     )
 
 
-def test_the_truth_is_rarely_refused_and_the_parameter_that_acts_is_told_and_not_the_idle_one():
+@pytest.mark.parametrize("n_trials", [40, pytest.param(100, marks=pytest.mark.slow)])
+def test_the_truth_is_rarely_refused_and_the_parameter_that_acts_is_told_and_not_the_idle_one(n_trials):
     generator = np.random.default_rng(4)
-    held, told, wrong, widths, n_trials = 0, 0, 0, [], 100
+    held, told, wrong, widths = 0, 0, 0, []
     for trial in range(n_trials):
         truth = generator.uniform()
         acts, idle, tests = _campaign(generator, truth)
