@@ -19,7 +19,7 @@ def free_turning(starts, momenta, inverse, time):
     momenta : float64 array, shape (n_bodies, 3)
         About the mass centre, world frame [kg m2/s].
     inverse : float64 array, shape (3, 3)
-        Of the inertia that all have, body frame [1/(kg m2)].
+        Inverse of the inertia that all have, body frame [1/(kg m2)].
     time : float64 array, shape (n_times,)
         [s]
 
