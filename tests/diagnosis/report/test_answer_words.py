@@ -75,6 +75,7 @@ def test_until_then_is_the_largest_upper_limit_of_the_drift_of_all_sealed_tests(
     assert f"by {number(factors[worst], 2)}:" in said
     assert f"({worst})" in said
     assert "no factor is known" in until_then(replace(one, gain=None))
+    assert until_then(found["unknown"]).endswith("Look at block-2 or block-1 before the next test.")
     assert "nominal model as it is" in until_then(found["none"])
     unjudged = replace(found["none"], verdict=found["none"].verdict.model_copy(update={"word": NOT_JUDGED}))
     assert "no test could be judged" in until_then(unjudged)

@@ -55,6 +55,7 @@ def until_then(diagnosed):
                 upper = without + at["value_interval"].sel(side="change").to_numpy()[-1]
                 factors[str(test)] = max(1.0, float(upper) / without)
     worst = max(factors, key=factors.get, default=None)
+    unknown = [one for one in diagnosed.decision.parts if verdict.word == UNKNOWN and one.causes[0].places]
     return _STATED.until_then(
         judged=verdict.word != NOT_JUDGED,
         nothing=verdict.word == NOTHING,
@@ -64,9 +65,7 @@ def until_then(diagnosed):
         limits=sum(name not in verdict.causes for name in verdict.excluded_above),
         quick=diagnosed.effort == "quick",
         idle=simulated and not verdict.extension,
-        inspect=" and ".join(_places(diagnosed, one) for one in diagnosed.decision.causes if one.places)
-        if verdict.word == UNKNOWN
-        else "",
+        inspect=" and ".join(_places(diagnosed, one.causes[0]) for one in unknown),
     )
 
 
