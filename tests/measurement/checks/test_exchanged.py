@@ -89,3 +89,17 @@ def test_a_block_that_follows_the_command_in_place_of_the_slab_is_named():
 
 def test_a_command_that_is_not_at_hand_makes_no_remark():
     assert remarks(column(LEANS["together"]), None) == []
+
+
+def test_an_axis_of_a_block_that_is_reversed_is_named():
+    test = column(LEANS["together"])
+    mine = [name for name in MARKERS if name.startswith("block-2")]
+    test["marker_displacement"].loc[{"marker": mine, "axis": "z"}] *= -1.0
+    assert "the markers of block-2 move as on a rigid body with z reversed alone" in remarks(test)
+
+
+def test_one_marker_of_each_of_two_blocks_that_are_exchanged_are_named():
+    test = column(LEANS["together"])
+    swap = {"block-1-upper": "block-2-upper", "block-2-upper": "block-1-upper"}
+    found = remarks(test.assign_coords(marker=[swap.get(name, name) for name in test["marker"].values]))
+    assert any(one.startswith("block-1-upper moves as block-2-upper should") for one in found)

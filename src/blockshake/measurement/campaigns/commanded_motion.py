@@ -140,8 +140,9 @@ def command_target(test, slab, commanded):
 def length_remarks(time, commanded):
     """A remark where the record ends before, or begins after, the strongest acceleration that was commanded."""
     breaks = commanded.table.breaks
-    strongest = breaks[np.abs(commanded.evaluate(breaks, 2)[:, 0]).argmax()]
-    if time[0] < strongest < time[-1]:
+    acceleration = np.abs(commanded.evaluate(breaks, 2)[:, 0])
+    strongest = breaks[acceleration.argmax()]
+    if not acceleration.any() or time[0] < strongest < time[-1]:
         return []
     how = "begins after" if strongest <= time[0] else "ends before"
     return [

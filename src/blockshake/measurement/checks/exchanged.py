@@ -1,13 +1,19 @@
 """Markers of two bodies that a map has exchanged, by the motion of a test."""
 
+import itertools
+
 import numpy as np
 
+from blockshake.geometry.schema import AXES
 from blockshake.measurement.checks.joint_fit import ABOVE_NOISE, exchanged_bodies, joint_fit
-from blockshake.measurement.motion.body_poses import TRANSLATION, body_poses
+from blockshake.measurement.motion.body_poses import POSE, TRANSLATION, body_poses
 from blockshake.measurement.motion.fall import find_fall, until_fall
+from blockshake.measurement.sensors.markers import marker_bodies, marker_position
 
 _LEAST = 2e-3  # m rms against the slab, of a block that is looked at
 _LESS = 0.7  # of the lower block's motion against the slab; blocks that rock together have 1.1 and more
+_MOST_ROWS, _MISFIT = 200, 5.0  # times the noise of a reading, of a misfit that is looked at
+_FITS = 0.3  # of the misfit to a rigid body
 _CLOSER = 0.25  # of the slab's mean square deviation from the command
 
 
@@ -35,6 +41,7 @@ def exchange_remarks(test, structure, sensors, target):
     whole = until_fall(test, find_fall(test, structure, sensors)).sizes["time"]
     free = [body for body in range(len(names)) if not structure.driven[body]]
     fit = joint_fit(structure, poses.position[:whole], poses.rotation[:whole])
+    remarks += _not_rigid(test.isel(time=slice(whole)), structure, poses, noise)
     found = exchanged_bodies(
         fit, [body for body in free if np.isfinite(poses.rotation[:, body]).any()], noise
     )
@@ -48,6 +55,49 @@ def exchange_remarks(test, structure, sensors, target):
             f"{one} moves as {other} should, and {other} as {one}: are their markers exchanged? {slide}"
         )
     return remarks
+
+
+def _not_rigid(test, structure, poses, noise):
+    """A remark on a body whose markers fit a rigid one with an axis reversed, or two markers exchanged, alone."""
+    rows = np.unique(np.linspace(0, test.sizes["time"] - 1, _MOST_ROWS).astype(int))
+    test = test.isel(time=rows)
+    names, on = test["marker"].values, np.array(marker_bodies(structure, test["marker"].values))
+    whole = [name for body, name in enumerate(structure.body_names) if poses.known[body] == POSE]
+    given = {name: _misfit(test, structure, name, noise) for name in whole}
+    least = _MISFIT * noise
+    for body in [name for name in whole if given[name] > least]:
+        for axis in reversed(AXES):  # x reversed would show against the slab too
+            turned = test.copy(deep=True)
+            turned["marker_displacement"].loc[{"marker": names[on == body], "axis": axis}] *= -1.0
+            if _misfit(turned, structure, body, noise) < _FITS * given[body]:
+                return [f"the markers of {body} move as on a rigid body with {axis} reversed alone"]
+        others = [name for name in whole if given[name] > least and name != body]
+        for one, other in itertools.product(names[on == body], names[np.isin(on, others)]):
+            swap = {one: other, other: one}
+            swapped = test.assign_coords(marker=[swap.get(name, name) for name in names])
+            if _misfit(swapped, structure, body, noise) < _FITS * given[body]:
+                return [
+                    f"{one} moves as {other} should: are the two exchanged? Others are then on a rigid body"
+                ]
+    return []
+
+
+def _misfit(test, structure, body, noise):
+    """Root mean square distance of a body's markers from those of the rigid body that fits best [m]."""
+    index = structure.body_names.index(body)
+    mine = test.isel(marker=np.flatnonzero(np.array(marker_bodies(structure, test["marker"].values)) == body))
+    poses = body_poses(mine, structure, noise, np.arange(len(structure.mass)) == index)
+    markers = {marker.name: np.array(marker.position) for marker in structure.file.markers}
+    start = marker_position(structure, structure.position, structure.orientation)
+    places = dict(zip(markers, start, strict=True))
+    off = []
+    for name in mine["marker"].values:
+        arm = markers[name] - structure.mass_offset[index]
+        read = (
+            mine["marker_displacement"].sel(marker=name).transpose("time", "axis").to_numpy() + places[name]
+        )
+        off.append(read - poses.position[:, index] - poses.rotation[:, index] @ arm)
+    return float(np.sqrt(np.nanmean(np.array(off) ** 2)))
 
 
 def _upside_down(moved, structure, poses, noise):
