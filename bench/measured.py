@@ -25,10 +25,12 @@ from blockshake.diagnosis.steps import decide
 from blockshake.files import load_json, write_text
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.pages.drawing import BLUE, GREEN, GREY, ORANGE, save_picture
+from blockshake.pages.wording import sentence_case
 from blockshake_flight.arcs import find_arcs, noise_of
 from blockshake_flight.causes import CAUSES
 from blockshake_flight.evidence import FlightFit
 from blockshake_flight.figure import plot_accelerations, plot_errors
+from blockshake_flight.gain import halves_words
 from blockshake_flight.replay import FlightModel, filmed_replay, start_arc
 from blockshake_flight.tracked_test import load_tracked
 from blockshake_flight.tumbling import tumbling
@@ -143,7 +145,7 @@ def _part(name, source, folder, halves):
         "\n".join(f"- {line}" for line in causes_in_words(decision, TITLES)),
         f"![acceleration beyond gravity over velocity]({name}-flights.png)",
         *_noise(name, evidence.attrs["noise"]),
-        _gains(load_json(output / "verdict.json")),
+        _gains(load_json(output / "verdict.json")), sentence_case(halves_words(gain["of_halves"].to_numpy())),
         "\n".join([_errors(gain, width), _started_again(campaign, decision, gain, width)]),
         f"![errors on sealed tests]({name}-errors.png)",
         _of_halves(others),

@@ -83,6 +83,7 @@ def part(rock, folder, output, store, repeats):
         f"{len(fell)} open tests, of which {fell.sum()} ended in a fall, and {gain.sizes['test']} sealed tests, of "
         f"which {int(gain['fell'].sum())} did. The verdict: **{verdict['decision']}** ({verdict['word']}).",
         "\n".join(f"- {line}" for line in causes_in_words(decision, TITLES)) or "- no cause is named",
+        "\n".join(["Caveats of the diagnosis:", "", *(f"- {line}" for line in decision.cannot_see)]),
         repeats, _scores(gain), _gains(verdict),
         f"![tests that the rock survived, and the predicted chance of a fall]({rock.lower()}-survival.png)",
         f"![share of falls over the motion's peaks]({rock.lower()}-fragility.png)",
@@ -131,7 +132,11 @@ def _other_solver(campaign, store):
         done = np.isfinite(lean) | np.isposinf(lean)
         fell = fell_in(campaign, runs["test"].to_numpy().tolist())
         usual = np.degrees(np.median(lean[np.isfinite(lean)]))
-        words = f"{solver}, {done.sum()} tests, median tilt without a fall {usual:.2g} degrees"
+        early = int(runs["settled"].to_numpy()[:, 0].sum())
+        words = (
+            f"{solver}, {done.sum()} tests, in {early} of which the rock moves by more than 1 % of its size before the "
+            f"table does; median tilt without a fall {usual:.2g} degrees"
+        )
         rows.append(_row(words, np.isposinf(lean)[done].astype(float), fell[done]))
     return "\n".join([
         f"Both solvers by the structure file's model, on all tests of every {_EVERY}th batch of {BATCH}, sealed "

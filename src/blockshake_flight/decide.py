@@ -17,7 +17,7 @@ from blockshake.effects.registry import EFFECTS
 from blockshake.errors import InputError
 from blockshake_flight.arcs import find_arcs
 from blockshake_flight.causes import CAUSES
-from blockshake_flight.evidence import explain, explained_share, flight_rows
+from blockshake_flight.evidence import explain, explained_share, flight_rows, widened
 from blockshake_flight.impacts import find_impacts, summary
 from blockshake_flight.inertia import seen_ratios
 from blockshake_flight.paths import fallen
@@ -98,13 +98,11 @@ def decide_flights(tracked, without=()):
     groups = find_causes(ranked, needed)
     firsts = [fits[0] for fits in stages[: len(groups)]]
     hidden = [fit for fits in stages[len(groups) :] for fit in fits if fit.gain > by_odds(fit.cause.name)]
-    alike = [
-        [
-            rows.refitted(fit, [*nominal, *(first for first in firsts if first is not own)])
-            for fit in fits[: len(group.rivals)]
-        ]
-        for group, fits, own in zip(groups, stages, firsts, strict=False)
-    ]
+    alike = []
+    for group, fits, own in zip(groups, stages, firsts, strict=False):
+        others = [*nominal, *(first for first in firsts if first is not own)]
+        again = [rows.refitted(fit, others) for fit in fits[: len(group.rivals)]]
+        alike.append([widened(rows, fit, others) for fit in again])
     parts = tuple(_part(tracked, group, fits) for group, fits in zip(groups, alike, strict=True))
     causes = [fits[0] for fits in alike]
     share = explained_share(rows, causes) if causes else 0.0

@@ -1,6 +1,6 @@
 """Evidence of causes in free flights: what Newton's second law leaves of the paths."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,8 @@ from blockshake_flight.paths import dragged_by_square, fallen, off_centre
 
 _INDEPENDENT = 3.0  # numbers that a flight and axis tell, if what its readings leave is smooth and no noise
 _ROUNDS = 4  # of weighing the flights
+# at most so many blocks of at least so many tests, and the fewest that tell a scatter: a frame errs by day
+_BLOCKS, _TESTS, _FEWEST = 10, 4, 3
 
 
 @dataclass(frozen=True)
@@ -47,6 +49,14 @@ class FlightRows:
         again = explain(rows, fit.cause)
         return FlightFit(fit.cause, fit.gain, again.sizes, again.covariance)
 
+    def of_tests(self, names):
+        """The rows of the flights of some tests alone, given by their names."""
+        kept = [arc.test in names for arc in self.arcs]
+        blocks = np.flatnonzero(np.repeat(kept, [len(arc.axes) for arc in self.arcs]))
+        arcs = [arc for arc, own in zip(self.arcs, kept, strict=True) if own]
+        likelihood = self.likelihood.of_tests(blocks) if arcs else None
+        return FlightRows(self.tracked, arcs, [self.values[n] for n in blocks], self.noise, likelihood)
+
 
 @dataclass(frozen=True)
 class FlightFit:
@@ -56,6 +66,10 @@ class FlightFit:
     gain: float  # logarithm of its evidence over that of none
     sizes: np.ndarray  # float64 (n_sizes,); the most probable ones
     covariance: np.ndarray  # float64 (n_sizes, n_sizes)
+
+    def with_variance(self, more):
+        """The fit with further variances of its sizes, (n_sizes,)."""
+        return replace(self, covariance=self.covariance + np.diag(more))
 
     @property
     def size(self):
@@ -138,3 +152,48 @@ def explained_share(rows, fits):
     floor = rows.noise**2 * len(before)
     left = before - taken
     return float(1.0 - (left @ left - floor) / (before @ before - floor))
+
+
+def blocks_of(names):
+    """Names of tests in blocks of one after the other, a list of list of str; empty of too few tests."""
+    count = min(_BLOCKS, len(names) // _TESTS)
+    return [list(block) for block in np.array_split(names, count)] if count >= _FEWEST else []
+
+
+def more_variance(sizes, variances):
+    """Variance that the scatter between blocks adds to a mean weighted by the inverse variances, (n_sizes,).
+
+    Parameters
+    ----------
+    sizes, variances : float64 arrays, shape (n_blocks, n_sizes)
+        Of each block alone.
+
+    Notes
+    -----
+    With the weights ``w = 1 / v`` and ``Q = sum w (x - mean)^2``, the variance between n blocks is ``max(0, (Q - n + 1)
+    / (sum w - sum w^2 / sum w))`` (DerSimonian and Laird 1986, Controlled Clinical Trials 7, Eq. 8). A frame's error
+    prefers no axis: it is at least that of all sizes of the cause, numerators and denominators summed. The weighted
+    mean has ``sum w^2 / (sum w)^2`` of it.
+    """
+    weights = 1.0 / variances
+    total, squares = weights.sum(axis=0), (weights**2).sum(axis=0)
+    mean = (weights * sizes).sum(axis=0) / total
+    excess = (weights * (sizes - mean) ** 2).sum(axis=0) - len(sizes) + 1.0
+    per_variance = total - squares / total
+    between = np.maximum(excess / per_variance, max(excess.sum(), 0.0) / per_variance.sum())
+    return between * squares / total**2
+
+
+def widened(rows, fit, others):
+    """A `FlightFit` given others, its covariance with the scatter of its sizes between blocks of tests."""
+    again = []
+    for names in blocks_of([test.name for test in rows.tracked.tests]):
+        block = rows.of_tests(names)
+        if block.arcs:
+            again.append(block.refitted(fit, others))
+    if len(again) < _FEWEST:
+        return fit
+    more = more_variance(
+        np.array([one.sizes for one in again]), np.array([np.diag(one.covariance) for one in again])
+    )
+    return fit.with_variance(more)

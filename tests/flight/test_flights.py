@@ -8,7 +8,8 @@ from made_flights import MASS, SIDE, campaign, drag
 
 from blockshake_flight.arcs import find_arcs
 from blockshake_flight.decide import decide_flights
-from blockshake_flight.gain import flight_gain
+from blockshake_flight.evidence import blocks_of, more_variance
+from blockshake_flight.gain import flight_gain, gains_of_halves, halves_words
 from blockshake_flight.impacts import find_impacts, summary
 from blockshake_flight.inertia import seen_ratios
 from blockshake_flight.replay import FlightModel, replay, start_arc
@@ -91,6 +92,49 @@ def test_causes_that_act_together_have_sizes_that_hold():
     assert found["drag"]["rate"].estimate == pytest.approx(0.6, rel=0.1)
     offsets = [found["eccentricity"][f"offset_{axis}"].estimate for axis in "xyz"]
     assert offsets == pytest.approx([0.006, 0.0, -0.004], abs=4e-4)
+
+
+def test_the_scatter_between_blocks_is_that_of_dersimonian_and_laird():
+    # two blocks of unit variance at 0 and 2: Q = 2, tau^2 = (2 - 1) / (2 - 2 / 2) = 1, of which a mean of two has half
+    assert more_variance(np.array([[0.0], [2.0]]), np.ones((2, 1))) == pytest.approx([0.5])
+    assert more_variance(np.array([[0.0], [0.5]]), np.ones((2, 1))) == pytest.approx([0.0])
+    # and with a second size that does not scatter: Q = 8 and 0, tau^2 = 7 and at least (7 - 1) / (1 + 1) = 3
+    assert more_variance(np.array([[0.0, 0.0], [4.0, 0.0]]), np.ones((2, 2))) == pytest.approx([3.5, 1.5])
+    assert [len(block) for block in blocks_of(list(map(str, range(14))))] == [5, 5, 4]
+    assert blocks_of(list(map(str, range(11)))) == []
+
+
+def test_intervals_count_a_frame_that_differs_by_day():
+    """The tracker's origin lies elsewhere on each of four days: the mean over days is known by the days alone."""
+    tracked, days = (
+        campaign(range(24), {"body": {"mass_offset": [0.0, 0.004, 0.006]}}),
+        [-1.5, 0.5, 2.0, -1.0],
+    )
+    by_day = [
+        replace(test, position=test.position + 1e-3 * days[number // 6] * test.rotation[:, :, 1])
+        for number, test in enumerate(tracked.tests)
+    ]
+    plain, _ = decide_flights(tracked)
+    moved, _ = decide_flights(replace(tracked, tests=by_day))
+    one, other = (decision.causes[0].parameters["offset_y"] for decision in (plain, moved))
+    assert (plain.causes[0].name, moved.causes[0].name) == ("eccentricity", "eccentricity")
+    assert other.lower < 0.004 < other.upper
+    # standard error of the mean of four days of this scatter, of which six blocks of four tests see most
+    error = 1.645e-3 * np.std(days, ddof=1) / 2.0
+    assert other.upper - other.lower > error
+    assert one.upper - one.lower < 0.5 * error
+    assert one.lower < 0.004 < one.upper
+
+
+def test_a_gain_states_the_halves_over_which_it_holds():
+    errors = np.array([[2.0] * 8, [3.0] * 8])
+    assert gains_of_halves(errors, 0.5 * errors) == pytest.approx(np.full(100, 0.5))
+    # of two settings each is best on some tests: no half tells which one is better on the other
+    tossed = np.array([[1.0, 3.0] * 4, [3.0, 1.0] * 4])
+    gains = gains_of_halves(np.full((1, 8), 2.0), tossed)
+    assert gains.min() < 0.0 <= gains.max()
+    assert halves_words(gains).startswith(f"on {(gains > 0.0).sum()} of 100 random halves")
+    assert len(gains_of_halves(errors[:, :3], errors[:, :3])) == 0
 
 
 def test_a_box_that_is_no_cube_keeps_its_angular_momentum_and_not_its_spin():
