@@ -12,7 +12,7 @@ from blockshake_flight.paths import dragged_by_square, fallen, off_centre
 _INDEPENDENT = 3.0  # numbers that a flight and axis tell, if what its readings leave is smooth and no noise
 _ROUNDS = 4  # of weighing the flights
 # at most so many blocks of at least so many tests, and the fewest that tell a scatter: a frame errs by day
-_BLOCKS, _TESTS, _FEWEST = 10, 4, 3
+_BLOCKS, _TESTS_EACH, _FEWEST_BLOCKS = 10, 4, 3
 
 
 @dataclass(frozen=True)
@@ -156,8 +156,8 @@ def explained_share(rows, fits):
 
 def blocks_of(names):
     """Names of tests in blocks of one after the other, a list of list of str; empty of too few tests."""
-    count = min(_BLOCKS, len(names) // _TESTS)
-    return [list(block) for block in np.array_split(names, count)] if count >= _FEWEST else []
+    count = min(_BLOCKS, len(names) // _TESTS_EACH)
+    return [list(block) for block in np.array_split(names, count)] if count >= _FEWEST_BLOCKS else []
 
 
 def more_variance(sizes, variances):
@@ -166,7 +166,7 @@ def more_variance(sizes, variances):
     Parameters
     ----------
     sizes, variances : float64 arrays, shape (n_blocks, n_sizes)
-        Of each block alone.
+        By block, each fitted alone.
 
     Notes
     -----
@@ -191,7 +191,7 @@ def widened(rows, fit, others):
         block = rows.of_tests(names)
         if block.arcs:
             again.append(block.refitted(fit, others))
-    if len(again) < _FEWEST:
+    if len(again) < _FEWEST_BLOCKS:
         return fit
     more = more_variance(
         np.array([one.sizes for one in again]), np.array([np.diag(one.covariance) for one in again])
