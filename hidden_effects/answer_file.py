@@ -27,7 +27,7 @@ class LoadShape(Part):
     """A cause that no effect of the registry is."""
 
     form: str = Field(
-        description="push, blow, rope, drag, dry-drag, spring-once, loose-weight or changed-edge"
+        description="push, blow, rope, drag, spring-and-damper, dry-drag, spring-once, loose-weight or changed-edge"
     )
     places: tuple[str, ...] = Field((), description="blocks on which it may act")
     starts: dict[str, Finite] = Field(default_factory=dict, description="by test, of a form that starts [s]")

@@ -89,13 +89,18 @@ def history_words(path):
         subject = f"the {name} of {where or 'all joints'}"
     else:
         subject = f"{name_of(name)}{f' ({where})' if where else ''}"
+    also = "".join(f"; {name} {_by_test(path.tests, sizes)}" for name, sizes in path.derived.items())
     if not path.changes:
-        return f"{subject}: one {path.parameter} in all tests is enough"
-    by_test = zip(path.tests, path.sizes, strict=True)
-    sizes = listed([f"{estimate_words('', size)} in {test}" for test, size in by_test])
+        return f"{subject}: one {path.parameter} in all tests is enough{also}"
+    sizes = _by_test(path.tests, path.sizes) + also
     more = f"; alone this explains more than {name_of(path.beats)}" if path.beats else ""
     times = f"{times_words(path.gain)} likelier than one {path.parameter} in all tests"
     return f"{subject}, by test: {path.parameter} {sizes}; that is {times}{more}"
+
+
+def _by_test(tests, sizes):
+    by_test = zip(tests, sizes, strict=True)
+    return listed([f"{estimate_words('', size)} in {test}" for test, size in by_test])
 
 
 def when_words(when):

@@ -39,6 +39,7 @@ SLOW = [
     ("vertical-motion", {}, {"ratio": 0.4, "delay": 0.05}, {}, "two-blocks"),
     ("blow", TOP, {"impulse": 2500.0}, {"blows": {"second": {"time": 3.0, "width": 0.08}}}, "two-blocks"),
     ("drag", TOP, {"damping": 3e4}, {}, "two-blocks"),
+    ("spring-and-damper", TOP, {"stiffness": 2e5, "damping": 3e4}, {}, "two-blocks"),
     ("dry-drag", TOP, {"force": 4000.0}, {}, "two-blocks"),
     ("spring-once", TOP, {"stiffness": 5e6}, {"test": "third", "side": 1, "gap": 0.012}, "two-blocks"),
     ("changed-edge", BASE, {"inset": 0.08}, {"before": ["weak", "first"], "lasts": True}, "two-blocks"),
@@ -49,7 +50,8 @@ SLOW = [
 ]
 WITHIN = 0.25  # of the size: the forms in the solvers are the columns' own, the discretisation is not
 # a force elsewhere makes the same rows by its moment; one that follows the motion there by the arm squared
-ARMS = {"rope": 2, "drag": 2, "spring-once": 2, "stopper-contact": 2}
+ARMS = {"rope": 2, "drag": 2, "spring-and-damper": 2, "spring-once": 2, "stopper-contact": 2}
+FOLLOWING = {"rope", "drag", "spring-and-damper"}  # of which each is called by its own name alone
 
 
 def _arm(place):
@@ -70,6 +72,12 @@ def test_a_cause_is_found_with_its_size(case):
     estimate = found[name].parameters[size]
     near = estimate.estimate == pytest.approx(true, rel=WITHIN)
     assert near or estimate.lower <= true <= estimate.upper
+    if name == "spring-and-damper":
+        assert found[name].parameters["damping"].estimate == pytest.approx(
+            values["damping"] / arm**2, rel=WITHIN
+        )
+    if name in FOLLOWING:
+        assert FOLLOWING & set(found) == {name}
 
 
 def test_sound_blocks_are_called_nothing():

@@ -201,8 +201,10 @@ def _together(stages, groups):
 def _with_last_sizes(part, paths):
     """The `Part` with its first cause as large as in the last test, where the cause changes from test to test."""
     first, *others = part.causes
-    changed = [path for path in paths if path.quantity == first.name and path.changes]
-    return part.model_copy(update={"causes": (of_last_test(first, changed[0]), *others)}) if changed else part
+    for path in paths:
+        if path.quantity == first.name and path.changes:
+            first = of_last_test(first, path)
+    return part.model_copy(update={"causes": (first, *others)})
 
 
 def _of_impacts(impacts):

@@ -125,6 +125,8 @@ class History(Strict):
     # logarithm of the evidence of sizes that walk from test to test over that of one size for all
     gain: Finite
     changes: bool  # it is more than a chance
+    # by name, what follows from the sizes: period and damping ratio of the body's mass on a spring with a damper
+    derived: dict[str, tuple[Estimate, ...]] = Field(default_factory=dict)
     beats: str = ""  # name of a cause of which these sizes, without it, explain more than it does; else empty
 
 

@@ -1,6 +1,9 @@
 """A campaign as a history: sizes by test, and whether they change from test to test, as edges that wear do."""
 
+from dataclasses import replace
+
 import numpy as np
+from scipy.linalg import block_diag
 from scipy.special import logsumexp
 
 from blockshake.diagnosis.answer.answer import after
@@ -41,19 +44,20 @@ def histories(evidence, given_first, first, seen):
     if evidence is None:
         return ()
     more = after([first]) if first and (first.cause, first.place) in evidence.keys else 0.0
-    own = _own(evidence, first, seen) if more else None
-    of_edges = own is not None and first.cause in _OF_EDGES
+    own = _own(evidence, first, seen) if more else ()
+    of_edges = bool(own) and first.cause in _OF_EDGES
     others = (quantity for quantity in _UNDAMAGED if not (of_edges and quantity == EDGES))
     undamaged = [_of_undamaged_joints(given_first or evidence, quantity, more) for quantity in others]
     if given_first:  # a walk that alone explains more than the cause does takes the cause's place
         alone = {quantity: _of_undamaged_joints(evidence, quantity, 0.0, first) for quantity in _UNDAMAGED}
         undamaged = [alone[one.quantity] or one for one in undamaged if one]
-    return tuple(one for one in (own, *undamaged) if one)
+    return tuple(one for one in (*own, *undamaged) if one)
 
 
 def of_last_test(cause, history):
-    """A `Cause` as large as in the last test of its own `History`: what acts in tests to come is that large."""
-    name, present = next(iter(cause.parameters.items()))
+    """A `Cause` as large as in the last test of a `History` of its own: what acts in tests to come is that large."""
+    name, present = history.parameter, cause.parameters[history.parameter]
+    number, apart = list(cause.parameters).index(name), cause.outside and len(cause.amplitudes) > 1
     last, known = history.sizes[-1], None if cause.outside else EFFECTS[cause.name].parameters[0]
     wider = (last.upper - last.lower) / max(present.upper - present.lower, 1e-300)
     null = known.null if known else 0.0
@@ -66,29 +70,67 @@ def of_last_test(cause, history):
         update={
             "parameters": cause.parameters | {name: last},
             "members": tuple(members),
-            "amplitudes": tuple(share * one for one in cause.amplitudes),
+            "amplitudes": tuple(
+                one if apart and column != number else share * one
+                for column, one in enumerate(cause.amplitudes)
+            ),
         }
     )
 
 
 def _own(evidence, first, seen):
-    """`History` of a cause at its best place; None where it has no amplitude or does not act in all tests."""
+    """`History` of every size of a cause at its best place; none where it has no amplitude or does not act in all
+    tests."""
     fit, place = evidence.best((first.cause, first.place)).best, place_of(first.cause, first.place, seen)
     size, form = fit.size[0], FORMS.get(first.cause)
     if not fit.covariance.any() or size == 0.0 or (form and form.rows is None):
-        return None
+        return ()
+    needed = by_odds(first.cause)  # errors of its form are in the scatter of the sizes
+    if form and form.more:
+        return _of_sizes(evidence, first.cause, form, fit, place, needed)
     if form:
         columns = [form.rows(test, place, fit.values) for test in evidence.tests]
     else:
         columns = [rows @ fit.mean / size for rows in fit.columns]
     name, unit = next(iter(units_of(first.cause).items()))
     found = _weighed(evidence, columns, float(fit.scales[0]))
-    needed = by_odds(first.cause)  # errors of its form are in the scatter of the sizes
 
     def read(amplitudes):
         return read_sizes(first.cause, fit.values, amplitudes, 0.0)[name]
 
-    return found and _history(first.cause, name, place, unit, found, needed, read)
+    return (_history(first.cause, name, place, unit, found, needed, read),) if found else ()
+
+
+def _of_sizes(evidence, cause, form, fit, place, needed):
+    """`History` of every size of a form with several, the others free in every test; and what an oscillator of the
+    body has."""
+    made, found = [form.rows(test, place, fit.values) for test in evidence.tests], []
+    for number, (name, unit) in enumerate(form.units.items()):
+        own, free = [rows[:, number] for rows in made], [np.delete(rows, number, axis=1) for rows in made]
+        weighed = _weighed(evidence, own, float(fit.scales[number]), (free, np.delete(fit.scales, number)))
+        found.append(weighed and _history(cause, name, place, unit, weighed, needed, np.asarray))
+    if not all(found):
+        return ()
+    structure = evidence.tests[0].seen.structure
+    mass = float(structure.mass[structure.body_names.index(place["body"])])
+    stiffness, damping = found
+    if min(one.lower for one in stiffness.sizes) <= 0.0:
+        return tuple(found)
+    periods = [_changed(one, lambda k: 2.0 * np.pi * np.sqrt(mass / k), "s") for one in stiffness.sizes]
+    ratios = [
+        _changed(c, lambda c, k=k.estimate: 0.5 * c / np.sqrt(k * mass), "1")
+        for c, k in zip(damping.sizes, stiffness.sizes, strict=True)
+    ]
+    return (
+        stiffness.model_copy(update={"derived": {"period": tuple(periods)}}),
+        damping.model_copy(update={"derived": {"damping ratio": tuple(ratios)}}),
+    )
+
+
+def _changed(estimate, read, unit):
+    """An `Estimate` through a monotonic function."""
+    lower, upper = sorted((float(read(estimate.lower)), float(read(estimate.upper))))
+    return Estimate(lower=lower, estimate=float(read(estimate.estimate)), upper=upper, unit=unit)
 
 
 def _of_undamaged_joints(evidence, quantity, more, rival=None):
@@ -127,18 +169,19 @@ def _history(quantity, name, place, unit, found, needed, read):
     )
 
 
-def _weighed(evidence, columns, scale):
+def _weighed(evidence, columns, scale, free=None):
     """Gain of a path over one value and over nothing, names of the tests, amplitudes of each test and their deviations.
 
     ``columns`` are by test, (n_rows,) each, per unit of the amplitude. Amplitudes of single tests have the prior of the
-    cause each, and share the nuisances. None where fewer than two tests have the column.
+    cause each, and share the nuisances. None where fewer than two tests have the column. ``free`` are further columns
+    by test, (n_rows, n_columns) each, with the scales of their amplitudes, of their own in each test.
     """
     acting = [number for number, column in enumerate(columns) if column.any()]
     if len(acting) < 2:
         return None
     logs, constant, path, alone = [], [], [], []
     for explained in evidence.explained:
-        likelihood = explained.likelihood
+        likelihood = _with_free(explained.likelihood, *free) if free else explained.likelihood
         single = np.zeros((len(likelihood.value), len(acting)))
         for column, number in enumerate(acting):
             rows = slice(likelihood.ends[number], likelihood.ends[number + 1])
@@ -162,6 +205,12 @@ def _weighed(evidence, columns, scale):
     names = tuple(evidence.tests[number].seen.name for number in acting)
     total = float(logsumexp(logs + path) - logsumexp(logs))
     return gain, total, names, free.mean, np.sqrt(np.diag(free.covariance))
+
+
+def _with_free(likelihood, columns, scales):
+    """The likelihood with columns whose amplitudes are free in each test."""
+    rows = block_diag(*(likelihood.whiten_one(number, one * scales) for number, one in enumerate(columns)))
+    return replace(likelihood, nuisances=np.hstack([likelihood.nuisances, rows]))
 
 
 def _columns(tests, quantity):

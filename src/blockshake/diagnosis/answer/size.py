@@ -45,6 +45,7 @@ def _drawn(name, place, fits, logs):
     counts = generator.multinomial(_DRAWS, weights / weights.sum())
     parts = [
         read_sizes(name, fit.values, _amplitudes(fit, count, generator), generator.uniform(-0.5, 0.5, count))
+        | _further(name, fit, count, generator)
         for fit, count in zip(fits, counts, strict=True)
         if count
     ]
@@ -63,6 +64,18 @@ def _amplitudes(fit, count, generator):
     return mean + deviation * drawn
 
 
+def _further(name, fit, count, generator):
+    """Draws of the further sizes of a form by name, none of them negative."""
+    more = FORMS[name].more if name in FORMS else ()
+    means, deviations = fit.mean[1:], np.sqrt(np.diag(fit.covariance)[1:])
+    return {
+        key: scipy.stats.truncnorm.rvs(
+            -mean / deviation, np.inf, mean, deviation, count, random_state=generator
+        )
+        for (key, _), mean, deviation in zip(more, means, deviations, strict=False)
+    }
+
+
 def read_sizes(name, values, amplitudes, between):
     """Parameters of a cause by name, arrays, from amplitudes of the variant with these values; see `Effect.reads`."""
     if name in FORMS:
@@ -74,7 +87,7 @@ def read_sizes(name, values, amplitudes, between):
 def units_of(name):
     """Units of the parameters of a cause by name, the size first."""
     if name in FORMS:
-        return {FORMS[name].size: FORMS[name].unit}
+        return FORMS[name].units
     return {parameter.name: parameter.unit for parameter in EFFECTS[name].parameters}
 
 

@@ -123,6 +123,7 @@ def expected_readings(seen, name, place, values):
         "joint-compliance": (("layer", joint), size),
         "base-compliance": (("base", "slab"), size),
         "rope": (("spring", "top"), size),
+        "spring-and-damper": (("spring", "top"), size),
         "dry-drag": (("hysteresis", "top"), size),
     }
     return dict([changed[name]]) if name in changed else {}

@@ -22,18 +22,19 @@ class Fit:
     covariance: np.ndarray  # float64 (n_amplitudes, n_amplitudes)
     positive: bool = False  # the first amplitude is not negative
     most: float = np.inf  # magnitude of the size, beyond which no structure has it
+    apart: bool = False  # every amplitude is a size of its own
 
     @property
     def size(self):
-        """Mean and standard deviation of the amplitudes as one of the first column."""
+        """Mean and standard deviation of the amplitudes as one of the first column, or of the first alone."""
         variance = float(self.contrast @ self.covariance @ self.contrast)
         return float(self.contrast @ self.mean), float(np.sqrt(max(variance, 0.0)))
 
     @cached_property
     def contrast(self):
         """Weights by which the amplitudes together are one of the first column, (n_amplitudes,)."""
-        if len(self.mean) == 1:
-            return np.ones(1)
+        if len(self.mean) == 1 or self.apart:
+            return np.eye(len(self.mean))[0]
         columns = np.concatenate(self.columns)
         square = float(columns[:, 0] @ columns[:, 0])
         return columns[:, 0] @ columns / square if square > 0.0 else np.eye(len(self.mean))[0]

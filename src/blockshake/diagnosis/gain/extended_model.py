@@ -169,7 +169,8 @@ def extended_experiment(experiment, cause, number, test):
     values = cause.members[number % len(cause.members)]
     if cause.outside:
         form = FORMS[cause.name]
-        return form.act(experiment, values[form.size], cause.place, cause.when, test)
+        sizes = (values[key] for key in form.units)
+        return form.act(experiment, *sizes, cause.place, cause.when, test)
     effect = EFFECTS[cause.name]
     extend = effect.extends or effect.act
     return extend(experiment, values, cause.place)

@@ -193,6 +193,8 @@ def cause_rows(cause, opened, sealed, likelihood):
     if form.rows is None or not form.lasts(cause.when):
         return None
     size, when = float(amplitudes[0]), cause.when
+    if form.more:
+        return [form.rows(test, cause.place, when) @ amplitudes for test in tests]
     if "starts" in when:
         starts = {
             test.seen.name: start_of_push(cause.place, size, test, likelihood, number)

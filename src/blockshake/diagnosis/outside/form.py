@@ -18,14 +18,20 @@ class LoadShape:
     # size, unit: name and unit of the size
     size: str
     unit: str
-    # of `JointRows`, the place and ``when``: rows of the form at the size 1, (n_rows,). None where the form
-    # states nothing of tests to come
+    # of `JointRows`, the place and ``when``: rows of the form at the size 1, (n_rows,), of one with more sizes a
+    # column each. None where the form states nothing of tests to come
     rows: Callable | None = None
-    # of an experiment, the size, the place, what else the form is (``when``), and the name of a test: the
+    # of an experiment, the sizes, the place, what else the form is (``when``), and the name of a test: the
     # experiment with it. None of a form that no model holds
     act: Callable | None = None
     # of ``when``: whether the form acts in tests that are still to come, and so can be tried on a sealed one
     lasts: Callable = lambda when: True
+    more: tuple = ()  # of (str, str); names and units of further sizes, none of which is negative
+
+    @property
+    def units(self):
+        """Units by name of all sizes, in their order."""
+        return {self.size: self.unit, **dict(self.more)}
 
 
 def force_entry(structure, place, **values):
