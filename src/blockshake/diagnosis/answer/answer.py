@@ -105,7 +105,7 @@ def _rival(cause, places, evidence, joined):
     return Alternative(cause, best, gain, score_of(cause, gain), near)
 
 
-def find_causes(ranked, needed):
+def find_causes(ranked, needed, in_pairs=False):
     """`Group` by falling strength, each found given the first causes of those before it: rank, compare, add, go on.
 
     Parameters
@@ -114,6 +114,8 @@ def find_causes(ranked, needed):
         Of the first `Alternative` of every group found so far: all rivals with them, by falling score.
     needed : callable
         Of the name of a cause and these: the log Bayes factor over none from which the cause is no chance.
+    in_pairs : bool
+        Whether leading effects are tried with a second one each: ``ranked`` then answers to any first cause.
 
     Notes
     -----
@@ -132,7 +134,7 @@ def find_causes(ranked, needed):
             break
         first = next(one for one in rivals if one is strong[0] or one.score > ODDS)
         scores = {rival.cause: rival.score for rival in rivals}
-        if first is strong[0] and not known:
+        if in_pairs and first is strong[0] and not known:
             pairs = _pair_scores(strong, scores, ranked, needed)
             most = max(pairs.values())
             likely = (one for one in strong if coarsened(most - pairs.get(one.cause, -np.inf), most) < ODDS)

@@ -175,7 +175,7 @@ def _in_joints(seen, evidence, closed, slab, thresholds):
     def needed(cause, known):
         return thresholds.of(cause) + further_need(cause, slab, known)
 
-    groups = find_causes(ranked, needed)
+    groups = find_causes(ranked, needed, in_pairs=True)
     firsts = [group.rivals[0] for group in groups]
     stages = [given(firsts[:count]) for count in range(len(firsts) + 1)]
     return [evidence, *(one for one in stages[1:] if one)], groups

@@ -12,10 +12,8 @@ from blockshake.forces.seen.point_rows import point_rows
 from blockshake.geometry.schema import CREEP
 
 _ROPE, _DRAG, _DRY = 3e5, 3e4, 0.05  # N/m, N s/m, of the block's weight
-_SURE, _FORM = (
-    np.log(20.0),
-    0.05,
-)  # nats, and share of the gain, within which the smaller part is an error of form
+# nats, and share of the gain, within which the smaller part is an error of form
+_SURE, _OF_SHARE = np.log(20.0), 0.05
 
 
 def explain_following(likelihood, points, weight):
@@ -35,7 +33,7 @@ def _together(likelihood, points, alone):
     fit = replace(found.best, apart=True)
     # the second size is not negative either
     gain = found.gain + np.log(2.0) + log_ndtr(fit.mean[1] / np.sqrt(fit.covariance[1, 1]))
-    if min(fit.mean) <= 0.0 or gain - alone <= _SURE + _FORM * max(gain, 0.0):
+    if min(fit.mean) <= 0.0 or gain - alone <= _SURE + _OF_SHARE * max(gain, 0.0):
         gain = NEVER
     return replace(found, gain=float(gain), fits=(replace(fit, gain=float(gain)),), gains=np.array([gain]))
 
