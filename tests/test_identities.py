@@ -35,6 +35,7 @@ VALUES = {
     "parameters": ({"restitution": 0.5}, {"restitution": 0.5, "nscd.theta": 0.6}),
     "time_step": (1e-3, 5e-4),
     "duration": (1.0, 2.0),
+    "joints": ((), (("slab", "block-1"),)),
     "output_rate": (None, 200.0),
     "tower": (STRUCTURE, STRUCTURE.with_parameters({"restitution": 0.4})),
     "instruments": (Instruments(), Instruments(marker_noise=2e-4)),

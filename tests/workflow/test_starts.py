@@ -10,7 +10,7 @@ from blockshake.files import PACKAGE
 # CPU seconds of an import: 0.5 of scipy.signal, which brings scipy.stats; 0.5 of scipy.optimize; 0.5 of matplotlib
 SLOW = ("scipy.optimize", "scipy.signal", "scipy.stats", "openpyxl", "sklearn")
 DRAWING = ("matplotlib", "PIL", "jinja2", "typst")
-REPORTS = ("make_report", "make_case_report", "make_diagnosis_report")
+REPORTS = ("make_report", "make_case_report", "make_diagnosis_report", "write_so_far")
 
 
 def imported_at_the_top(file):

@@ -23,6 +23,11 @@ SAMPLES, TWIN, CALIBRATION, FRAGILITY = "samples", "twin", "calibration", "fragi
 HALF_STEP = "half-step"  # batch of the twin: the first sample at half the time step
 
 
+def part_of(batch):
+    """Part of a study that a batch is counted in: `TWIN` or `SAMPLES`."""
+    return TWIN if batch == HALF_STEP else SAMPLES
+
+
 def part_name(part, case, model):
     """Name of the runs of a case by a model in one part of a study, as lines on them begin."""
     return f"{part} of {case}, {model}"
