@@ -55,6 +55,7 @@ rule measure_indices:
 rule write_responses:
     """All answers in one table: a row a run, with its sampled values, its motion, its responses and how it ended."""
     input:
+        design="results/{study}/design.csv",
         samples=expand(
             "results/{{study}}/samples/{model}/{case}.nc", model=MODELS, case=CASES
         ),

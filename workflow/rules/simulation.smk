@@ -30,6 +30,9 @@ rule simulate_batch:
         runtime=240,
     params:
         runs=sample_runs,
+        batch=lambda wildcards: values_of(
+            wildcards.case, wildcards.model, wildcards.batch
+        ),
         seed=lookup(dpath="ensemble/seed", within=config),
         store="results/store",
         yaml_contents=yaml_contents(run_files),
