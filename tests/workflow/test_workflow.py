@@ -126,6 +126,8 @@ def test_every_simulating_rule_leaves_a_log_with_its_cost(finished):
         log = finished.folder / "logs" / f"{batch}.log"
         assert "numba" in log.read_text()
         assert log.read_text().endswith(" CPU s.\n")
+        header, row = log.with_suffix(".tsv").read_text().splitlines()
+        assert float(dict(zip(header.split("\t"), row.split("\t"), strict=True))["cpu_time"]) > 0.0
 
 
 def test_report_of_one_case_needs_its_results_alone(finished):

@@ -13,6 +13,8 @@ rule climb_samples:
         "results/{study}/climbs/{case}/{batch}.nc",
     log:
         "logs/{study}/climb_samples/{case}/{batch}.log",
+    benchmark:
+        "logs/{study}/climb_samples/{case}/{batch}.tsv",
     conda:
         "../envs/blockshake.yaml"
     resources:

@@ -23,6 +23,8 @@ rule simulate_batch:
         "results/{study}/runs/{model}/{case}/{batch}.nc",
     log:
         "logs/{study}/simulate_batch/{model}/{case}/{batch}.log",
+    benchmark:
+        "logs/{study}/simulate_batch/{model}/{case}/{batch}.tsv",
     priority: for_first_picture
     conda:
         "../envs/blockshake.yaml"

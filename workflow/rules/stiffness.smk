@@ -8,6 +8,8 @@ rule calibrate_stiffness:
         waves="results/{study}/waves/{case}.nc",
     log:
         "logs/{study}/calibrate_stiffness/{case}.log",
+    benchmark:
+        "logs/{study}/calibrate_stiffness/{case}.tsv",
     priority: for_first_picture
     conda:
         "../envs/blockshake.yaml"
