@@ -90,7 +90,7 @@ def drawn_design(settings, source, folder):
     source : str
         Digest of what draws them.
     folder : str or path
-        Of the study's results, where ``design.json`` states what ``design.csv`` was drawn from.
+        Folder of the study's results, where ``design.json`` states what ``design.csv`` was drawn from.
     """
     folder = Path(folder)
     with contextlib.suppress(InputError):
