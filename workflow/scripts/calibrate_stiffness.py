@@ -7,11 +7,7 @@ from blockshake.study.stiffness.wave_speed import calibrate_design, wave_tests
 
 with logging_to(snakemake.log[0]) as say:
     params = snakemake.params
-    stiffness = calibrate_design(
-        params.structure,
-        batch_rows(params.samples, None),
-        params.linked,
-        Store(params.store, params.source, say),
-    )
+    rows, store = batch_rows(params.samples, None), Store(params.store, params.source, say)
+    stiffness = calibrate_design(params.structure, rows, params.linked, store)
     write_design(snakemake.output.stiffness, stiffness)
     write_dataset(snakemake.output.waves, wave_tests(params.structure))
