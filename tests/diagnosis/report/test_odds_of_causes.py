@@ -6,6 +6,7 @@ import pytest
 from made_up_decision import made_up_part
 
 from blockshake.diagnosis.answer.decision import HeldOut
+from blockshake.diagnosis.evidence.explanation import NEVER
 from blockshake.diagnosis.report.odds_section import odds_section
 from blockshake.pages.blocks import Text
 
@@ -24,3 +25,10 @@ def test_the_cause_is_held_against_the_tests_to_select_by(gain, expected, p, wor
     diagnosed = SimpleNamespace(decision=SimpleNamespace(parts=(part,)))
     *_, last = (one.text for one in odds_section(diagnosed).blocks if isinstance(one, Text))
     assert words in last
+
+
+def test_a_cause_that_cannot_be_has_no_row():
+    part = made_up_part("eccentricity", "push")
+    part = part.model_copy(update={"gains": part.gains | {"push": NEVER}})
+    _, table = odds_section(SimpleNamespace(decision=SimpleNamespace(parts=(part,)))).blocks
+    assert [row[0] for row in table.rows] == ["eccentric mass of a block", "nothing"]

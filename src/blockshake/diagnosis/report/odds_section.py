@@ -5,6 +5,7 @@ from itertools import chain
 from blockshake.diagnosis.answer.answer import COARSENING, coarsened
 from blockshake.diagnosis.answer.decision import HELD_OUT_LEVEL
 from blockshake.diagnosis.answer.thresholds import FREE_SHARE
+from blockshake.diagnosis.evidence.explanation import NEVER
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.diagnosis.report.statement import RATIO
 from blockshake.diagnosis.wording import name_of, times_words
@@ -31,7 +32,8 @@ def _of_part(part):
 def _table(part):
     """Every cause and none, the most probable first."""
     first, rows = part.causes[0], []
-    odds = {**part.odds, None: coarsened(first.gain, first.gain)}
+    possible = {name: value for name, value in part.odds.items() if part.gains[name] > NEVER}
+    odds = {**possible, None: coarsened(first.gain, first.gain)}
     for name in sorted(odds, key=odds.get):
         kind = "" if name is None else "form from outside" if name in FORMS else "effect"
         less = times_words(odds[name]) if odds[name] > 0.0 else "the most probable"
