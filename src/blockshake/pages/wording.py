@@ -89,11 +89,6 @@ def quantile_percent(probability):
     return f"{100.0 * probability:g} %"
 
 
-def quantile_range(values, show):
-    """Values along ``quantile`` at 5, 50 and 95 %, each printed by ``show``, parted by slashes."""
-    return " / ".join(show(values.sel(quantile=one)) for one in SHOWN_QUANTILES)
-
-
 def limited(found, name, show=number):
     """Number of a Dataset with its limits in ``NAME_interval(bound)``, ``3.0 [2.5, 3.4]``; alone where it has none."""
     value, limits = float(found[name]), found[f"{name}_interval"].sel(bound=["lower", "upper"]).to_numpy()

@@ -71,7 +71,9 @@ def decide(seen, without=(), unseen=(), thresholds=_BY_ODDS, select=()):
     fitted, explained = _together(stages, groups)
     acting = [
         _part(group, seen, evidence, {} if number else closed, held_out=held_out_rows(stage, group, select))
-        for number, (group, evidence, stage) in enumerate(zip(groups, fitted, stages, strict=False))
+        for number, (group, evidence, stage) in enumerate(
+            zip(groups, fitted, stages[: len(groups)], strict=True)
+        )
         if group.asserted
     ]
     acting = [part.model_copy(update={"readings": _JOINTS[min(n, 1)]}) for n, part in enumerate(acting)]

@@ -74,9 +74,8 @@ class HeldOut(Strict):
     gain: Finite  # logarithm of its evidence over none by these tests
     tried: Count  # causes and places among which it was chosen
     p: Fraction  # largest chance of as much without any cause
-    expected: Finite | None = (
-        None  # gain that a cause of its size gives; None of one that moves the slab in every test
-    )
+    # gain that a cause of its size gives; None of one that moves the slab in every test
+    expected: Finite | None = None
 
     @property
     def holds(self):

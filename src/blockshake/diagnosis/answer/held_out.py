@@ -3,7 +3,8 @@
 By these tests alone, the ratio B_k of the evidence of cause k at a place over no cause has the mean 1 where nothing
 acts. The mean over all K causes and places exceeds 1 / a with the probability a at most (Markov's inequality; e-values,
 Vovk and Wang 2021, Proposition 2.2). B / K of the chosen one is no larger than this mean: the test holds its level
-although these tests had a part in the choice.
+although these tests had a part in the choice. That of a further cause holds given those before it, which were fitted
+to these tests as well: its level is approximate.
 """
 
 import numpy as np
