@@ -25,7 +25,7 @@ def diagnose(
     cores: int | None = None,
     say: Callable[[str], object] = print,
 ) -> "Verdict":
-    """Show what simulations of measured tests get wrong, name the cause, extend the model and measure the gain.
+    """Show what simulations of measured tests get wrong, name the cause, extend the model and measure its skill.
 
     Simulates by the workflow's rules, in ``results`` of the current folder: a run that was stopped goes on where it
     was, and a second campaign of the same structure and motions finds their ensembles there. One study or diagnosis at

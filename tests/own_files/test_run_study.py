@@ -91,7 +91,7 @@ def test_progress_is_told_by_case_with_the_time_left(folder, workflow, capsys):
     )
     assert main(["study", "study.yaml", "--cores", "2"]) == 0
     told = [line for line in capsys.readouterr().out.splitlines() if ": 10 of 10; " in line]
-    # nothing is known of LS-DEM; strong runs last twice as long as weak ones, twins take half the step: 12 x 4 s and
+    # nothing is known of LS-DEM; strong runs last twice as long as weak ones, replicates take half the step: 12 x 4 s and
     # 2 x 2 s on 2 cores
     assert told[0] == "samples of weak, nscd-rigid: 10 of 10; 10 of 48 runs; more than 26 s for the runs left"
     # and 12 x 10 s and 2 x 5 s by LS-DEM
@@ -130,7 +130,7 @@ def test_no_time_is_told_where_none_is_known_and_never_no_time_while_runs_are_le
         assert " 0 s" not in heard[-1]
     for case, model in product(("weak", "strong"), ("ls-dem", "nscd-rigid")):
         assert heard[-1].endswith(" for the runs left")
-        progress(sample(case, model, 0, 0.02, "twin"))
+        progress(sample(case, model, 0, 0.02, "replicate"))
     assert heard[-1].endswith(
         "48 of 48 runs, 10 of them from the store; all runs are done, and the jobs after them are left"
     )
@@ -155,7 +155,7 @@ def test_every_run_that_the_estimate_lists_is_counted_by_its_own_lines(folder):
     assert list(progress.parts.values()) == parts
     assert progress.total == sum(one.count for one in parts) == 48 + 4 * 3
     progress(sample("weak", "ls-dem", 0, 1.0))
-    progress(sample("weak", "ls-dem", 0, 1.0, "twin"))
+    progress(sample("weak", "ls-dem", 0, 1.0, "replicate"))
     assert progress.done["samples of weak, ls-dem"] == {"sample 0"}
     assert progress.runs_left() == 60 - 1 - 2
     for number in range(4):

@@ -83,7 +83,7 @@ def test_all_models_run_all_cases_of_the_default_study(mapping):
     assert config.samples("nscd-rigid", "configuration-4") == config.ensemble.size
     few = config.samples("nscd-elastic", "configuration-4")
     assert 1 <= few < config.ensemble.size
-    assert config.has_twin("nscd-elastic", "configuration-4") == (few >= SURE_FROM)
+    assert config.has_replicate("nscd-elastic", "configuration-4") == (few >= SURE_FROM)
 
 
 @pytest.mark.parametrize(

@@ -169,7 +169,7 @@ def runs_of(model, case, **others):
 
 
 def sample_runs(wildcards):
-    """Those of the samples of an ensemble, or of the twin of its first one."""
+    """Those of the samples of an ensemble, or of the replicate of its first one."""
     case, rate = case_definition(wildcards), config["output_rate"]
     runs = runs_of(wildcards.model, case, output_rate=rate)
     if wildcards.batch == HALF_STEP:
@@ -205,12 +205,12 @@ def batches_of_models(wildcards):
 
 
 def files_of_models(wildcards):
-    """These, and the twin of every model that has one."""
+    """These, and the replicate of every model that has one."""
     folder, case = f"results/{wildcards.study}/runs", wildcards.case
     return batches_of_models(wildcards) | {
         f"twin {model}": f"{folder}/{model}/{case}/{HALF_STEP}.nc"
         for model in MODELS
-        if CHECKED.has_twin(model, case)
+        if CHECKED.has_replicate(model, case)
     }
 
 

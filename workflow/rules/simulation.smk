@@ -12,7 +12,7 @@ rule compile_kernels:
 
 
 rule simulate_batch:
-    """Some samples of a case by a model, or the twin of the first one; a single sample is a batch whose first is its last.
+    """Some samples of a case by a model, or the replicate of the first one; a single sample is a batch whose first is its last.
 
     Each finished sample goes at once to the store, from which a killed batch resumes: the store is
     no declared output, because Snakemake deletes those of a killed job.

@@ -20,7 +20,7 @@ def study_cost(path):
 
     Notes
     -----
-    A twin counts as two runs; the fragility with as many runs as it may need; a diagnosis
+    A replicate counts as two runs; the fragility with as many runs as it may need; a diagnosis
     without the runs of a cause, which it has only where it finds one.
     """
     config = load_config(path)

@@ -1,4 +1,4 @@
-"""Level set of a chamfered box with flat or hollow faces: the distance of Eq. (1) and its gradient, in closed form."""
+"""Level set of a chamfered box with flat or concave faces: the distance of Eq. (1) and its gradient, in closed form."""
 
 from math import copysign
 
@@ -39,7 +39,7 @@ def box_distance(x, y, z, a, b, c, chamfer):
 
 @kernel_without_allocation
 def hollow_depth(u, v, hollow):
-    """Depth of a hollow face below its perimeter: ``hollow (1 - u^2)^2 (1 - v^2)^2``, without a kink there [m].
+    """Depth of a concave face below its perimeter: ``hollow (1 - u^2)^2 (1 - v^2)^2``, without a kink there [m].
 
     ``u, v``: across the face over its half widths [1]; ``hollow``: in the middle [m]. It is zero beyond the perimeter.
     """
@@ -50,11 +50,11 @@ def hollow_depth(u, v, hollow):
 
 @kernel_without_allocation
 def hollow_box_distance(x, y, z, a, b, c, chamfer, hollow):
-    """Level-set value and normal of a chamfered box whose six faces are hollow, by arguments of `box_distance`.
+    """Level-set value and normal of a chamfered box whose six faces are concave, by arguments of `box_distance`.
 
     ``hollow``: depth of the middle of each face below its perimeter [m], see `hollow_depth`. The value is the distance
     along the normal of the face that is nearest [m], negative inside; the normal is that of the face as if it were
-    flat: a hollow of 1 mm tilts it by some mrad.
+    flat: a concavity of 1 mm tilts it by some mrad.
     """
     u, v, w = x * (1.0 / (a - chamfer)), y * (1.0 / (b - chamfer)), z * (1.0 / (c - chamfer))
     fx = abs(x) - a + hollow_depth(v, w, hollow)

@@ -15,7 +15,7 @@ def box_nodes(size, chamfer, hollow, spacing, inset):
     chamfer : float
         Leg of the chamfer [m]; the flats end there.
     hollow : float
-        Depth of the middle of each face below its perimeter [m]; the nodes lie on the hollow face.
+        Depth of the middle of each face below its perimeter [m]; the nodes lie on the concave face.
     spacing : float
         Aimed distance of nodes along each edge [m]; at least two intervals an edge.
     inset : float

@@ -14,7 +14,7 @@ from blockshake.own_files.run_workflow import Listener, cores_of, run_workflow, 
 from blockshake.pages.answer_lines import answer_lines
 from blockshake.pages.wording import count_words, time_words
 from blockshake.study.config import load_config
-from blockshake.study.ensembles.batch import CALIBRATION, SAMPLES, TWIN
+from blockshake.study.ensembles.batch import CALIBRATION, REPLICATE, SAMPLES
 from blockshake.study.growth import grow, reached
 from blockshake.study.planned_runs import LINE, planned_runs
 from blockshake.working_folder import hold
@@ -211,7 +211,7 @@ def _finished(results, part):
     """Lines of the runs of a `PlannedRuns` whose files are in the folder of a study's results."""
     runs = results / "runs" / part.model / part.case
     whole = {
-        TWIN: runs / "half-step.nc",
+        REPLICATE: runs / "half-step.nc",
         CALIBRATION: results / "open-tests" / part.model / f"{part.case}.nc",
     }
     if part.part in whole:

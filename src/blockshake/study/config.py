@@ -206,7 +206,7 @@ class StudyCase(Strict):
         {},
         description="fewer samples than the ensemble's, at least 1, by model: the first rows of the design. With fewer "
         "than three the case has no distances, widths or scores of that model, and with fewer than six no limits of "
-        "them and no twin",
+        "them and no replicate",
     )
     measured: Measured | None = Field(None, description="none: compared with no test")
     input: Literal[MEASURED, COMMANDED] = Field(
@@ -373,7 +373,7 @@ class StudyConfig(Strict):
         """Number of samples of a case by a model."""
         return min(self.case(case).samples.get(model, self.ensemble.size), self.ensemble.size)
 
-    def has_twin(self, model, case):
+    def has_replicate(self, model, case):
         """Whether the first sample of a case by a model is run again at half the step, for the floor of numerics."""
         return self.samples(model, case) >= SURE_FROM
 

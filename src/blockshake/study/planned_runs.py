@@ -6,11 +6,11 @@ from typing import NamedTuple
 from blockshake.measurement.campaigns.campaign import load_campaign, load_test
 from blockshake.measurement.motion.measured_base import record_start
 from blockshake.simulation.models import solver_of
-from blockshake.study.ensembles.batch import CALIBRATION, FRAGILITY, SAMPLES, TWIN, part_name
+from blockshake.study.ensembles.batch import CALIBRATION, FRAGILITY, REPLICATE, SAMPLES, part_name
 
-_OF_TWIN = 2  # runs that a twin costs, of half the step
+_OF_REPLICATE = 2  # runs that a replicate costs, of half the step
 LINE = re.compile(
-    rf"^((?:{SAMPLES}|{TWIN}|{CALIBRATION}|{FRAGILITY}) of .*): (sample \d+.*?), (.*?)(?:; took (\S+) s)?$"
+    rf"^((?:{SAMPLES}|{REPLICATE}|{CALIBRATION}|{FRAGILITY}) of .*): (sample \d+.*?), (.*?)(?:; took (\S+) s)?$"
 )
 """Line on a run that is done: its part, which one it is, how it ended, and seconds where it was simulated."""
 
@@ -21,7 +21,7 @@ class PlannedRuns(NamedTuple):
     part: str  # first word of its name
     case: str
     model: str
-    count: int  # simulations at most; a twin counts as two
+    count: int  # simulations at most; a replicate counts as two
     motions: float  # whole motions in them, for the time that they take
     lines: tuple[str, ...]  # what their lines call them: some runs share one
 
@@ -39,8 +39,8 @@ def planned_runs(config, model, case):
 
     samples = config.samples(model, case.name)
     parts = [of(SAMPLES, samples, samples, _samples(samples))]
-    if config.has_twin(model, case.name):
-        parts.append(of(TWIN, _OF_TWIN, _OF_TWIN, _samples(1)))
+    if config.has_replicate(model, case.name):
+        parts.append(of(REPLICATE, _OF_REPLICATE, _OF_REPLICATE, _samples(1)))
     planned = config.calibration
     if planned is not None and case.name in planned.cases.get(model, ()):
         # a test is simulated for its record where that is shorter than the case

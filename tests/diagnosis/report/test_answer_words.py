@@ -80,7 +80,7 @@ def test_until_then_is_the_largest_upper_limit_of_the_drift_of_all_sealed_tests(
     unjudged = replace(found["none"], verdict=found["none"].verdict.model_copy(update={"word": NOT_JUDGED}))
     assert "no test could be judged" in until_then(unjudged)
     idle = replace(one, verdict=one.verdict.model_copy(update={"extension": ()}))
-    assert "gains nothing on the tests to select by" in until_then(idle)
+    assert "predicts the tests to select by no better" in until_then(idle)
     assert effect_section(one) is not None
     assert effect_section(idle) is None
 

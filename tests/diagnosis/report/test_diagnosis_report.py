@@ -239,14 +239,14 @@ def test_tests_sensors_and_files_are_accounted_for(pages, found):
     assert f"judged by 3 tests ({', '.join(OPEN)}), of which joints moved in 2, effort standard" in text
     assert f"{OPEN[1]} alkion 1 fit judged by" in text
     for name in SEALED:
-        assert f"{name} alkion 1 sealed sealed: read for the gain alone" in text
+        assert f"{name} alkion 1 sealed sealed: read for the skill score alone" in text
     assert "sealed: not read" in pages["none"][1]
     assert "214 hypotheses on" in text
     assert "Not checked against others" in text
     assert "2 accelerometer channels" in text
-    assert "Accelerometer channels whose gain the markers of their bodies show: block-1-acc-x." in text
+    assert "Accelerometer channels whose scale the markers of their bodies show: block-1-acc-x." in text
     assert "the markers do not show what they read or it is small: block-1-acc-z." in text
-    assert "whose gain the markers of their bodies show: wire-1." in text
+    assert "whose scale the markers of their bodies show: wire-1." in text
     assert "these hardly moved apart: wire-2." in text
     assert "The rotation of block-4, which has one marker." in text
     assert not [path for path in found["named"].digests if any(name in path for name in SEALED)]

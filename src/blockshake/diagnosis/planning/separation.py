@@ -106,12 +106,12 @@ class NominalCampaign:
         }
 
 
-def _odds(gain, apart, prior=0.0):
-    """Coarsened odds of a cause over a rival that gains less, and their standard deviation by the sensors' noise.
+def _odds(factor, apart, prior=0.0):
+    """Coarsened odds of a cause over a rival with a smaller log Bayes factor, and their standard deviation by the sensors' noise.
 
-    ``prior`` is by how much the rival's score exceeds its gain more than the cause's does.
+    ``prior`` is by how much the rival's score exceeds its log Bayes factor more than the cause's does.
     """
-    share = 1.0 / (1.0 + COARSENING * max(gain, 0.0) / ODDS)
+    share = 1.0 / (1.0 + COARSENING * max(factor, 0.0) / ODDS)
     return share * (apart - prior), share * np.sqrt(2.0 * max(apart, 0.0))
 
 

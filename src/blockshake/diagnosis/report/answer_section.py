@@ -51,7 +51,7 @@ def answer_section(diagnosed):
 
 
 def _facts(diagnosed):
-    """The three numbers of the box: chance without a cause, size, gain, each with its label and a note."""
+    """The three numbers of the box: chance without a cause, size, skill score, each with its label and a note."""
     chance = chance_words(diagnosed.verdict.misfit.p)
     seen = "Chance of such readings without a cause", chance, "upper bound, over all that was tried"
     return seen, _size_fact(diagnosed), _gain_fact(diagnosed)
@@ -73,7 +73,7 @@ def _size_fact(diagnosed):
 
 
 def _gain_fact(diagnosed):
-    """Gain on the responses, or on a sensor's readings; one on forces alone is no prediction, and no headline."""
+    """Skill score on the responses, or on a sensor's readings; one on forces alone is no prediction, and no headline."""
     label, verdict = "Error on sealed tests that the cause removes", diagnosed.verdict
     gain, forces = verdict.gain, verdict.row_gain and percent_words(verdict.row_gain.recalibrated)
     if gain is None and forces:

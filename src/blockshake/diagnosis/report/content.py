@@ -31,7 +31,7 @@ class Diagnosed:
     decision: Decision
     parity: Parity
     departures: xr.Dataset  # xarray.Dataset; from `departures`
-    # of the responses or of a sensor, from the step that measures the gain; None where none was measured
+    # of the responses or of a sensor, from the step that measures the skill score; None where none was measured
     gain: xr.Dataset | None
     misfit: xr.Dataset | None  # from `misfit`; None where nothing was simulated
     structure: str  # its name
@@ -60,7 +60,7 @@ def load_diagnosed(campaign, results, effort, track_record):
     files = [campaign.folder / "campaign.yaml"]
     files += [campaign.folder / campaign.tests[name].file for name in decision.tests]
     files += [results / name for name in _RESULTS]
-    gain = results / _GAIN if verdict.gain else None  # a file of an earlier gain may still lie there
+    gain = results / _GAIN if verdict.gain else None  # an earlier file may still lie there
     misfit = results / _MISFIT if effort != "quick" and (results / _MISFIT).exists() else None
     files += [path for path in (gain, misfit) if path]
     tests = {test.motion: test for test in campaign.tests.values()}

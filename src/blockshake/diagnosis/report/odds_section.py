@@ -16,7 +16,7 @@ _COUNTED = Words(__name__)
 
 
 def odds_section(diagnosed):
-    """Odds and gains of all rivals, one table a part of the readings."""
+    """Odds and log Bayes factors of all rivals, one table a part of the readings."""
     parts = diagnosed.decision.parts
     blocks = [Text(_COUNTED.method(COARSENING, FREE_SHARE)), *([] if parts else [Text(_COUNTED.nothing())])]
     return Section("Odds of all causes", "odds", (*blocks, *chain(*map(_of_part, parts))))
@@ -37,7 +37,7 @@ def _table(part):
     for name in sorted(odds, key=odds.get):
         kind = "" if name is None else "form from outside" if name in FORMS else "effect"
         less = times_words(odds[name]) if odds[name] > 0.0 else "the most probable"
-        gain = f"{part.gains[name]:.1f}" if name else "0"
-        rows.append((name_of(name) if name else "nothing", kind, less, gain))
+        factor = f"{part.gains[name]:.1f}" if name else "0"
+        rows.append((name_of(name) if name else "nothing", kind, less, factor))
     words = _COUNTED.table(part.readings, first.title, RATIO)
-    return Table(words, ("Cause", "Kind", "Less probable", "Gain"), tuple(rows), "llrr")
+    return Table(words, ("Cause", "Kind", "Less probable", "Log Bayes factor"), tuple(rows), "llrr")

@@ -38,7 +38,7 @@ def _tests_table(diagnosed):
             use += " the slab alone: no joint moved"
         if test.role == "sealed":
             read = diagnosed.verdict.gain or diagnosed.verdict.row_gain
-            use = "sealed: read for the gain alone" if read else "sealed: not read"
+            use = "sealed: read for the skill score alone" if read else "sealed: not read"
         rows.append((test.name, test.motion, given(test.scale), test.role, use))
     words = _TESTED.tests(diagnosed.campaign.name)
     return Table(words, ("Test", "Motion", "Scale", "Role", "Use"), tuple(rows), "llrll")

@@ -106,9 +106,9 @@ def models_of(found):
 
 
 def _assumed(name, study, cases):
-    """Value that the study takes: a mean friction, the wave speed's stiffness, restitution and hollow of a structure.
+    """Value that the study takes: a mean friction, the wave speed's stiffness, restitution and concavity of a structure.
 
-    The structure is the first one of the ``cases``, for a hollow the first of boxes.
+    The structure is the first one of the ``cases``, for a concavity the first of boxes.
     """
     if name.startswith("friction."):
         return float(load_distributions(study["ensemble"]["distributions"], "ensemble")[name].mean)

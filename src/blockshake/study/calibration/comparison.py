@@ -156,7 +156,7 @@ def left_out(compared):
 
 
 def _as_parameters(drawn, used, structure, named, store):
-    """Rows by dotted name: stiffness as the factor times that of the nominal wave test, the hollow as its depth.
+    """Rows by dotted name: stiffness as the factor times that of the nominal wave test, the concavity as its depth.
 
     Parameters of contact springs are left out where the model has none: rigid contact needs no wave test.
     """

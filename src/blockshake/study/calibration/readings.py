@@ -32,7 +32,7 @@ from blockshake.study.ensembles.case_input import (
 from blockshake.study.sampling.sample_parameters import used_parameters
 
 _SEGMENT = 1.0  # s, of the spectra: lines 1 Hz apart
-# of the step of a run that does not converge: joints of a hollow face or of many blocks ask for less
+# of the step of a run that does not converge: joints of a concave face or of many blocks ask for less
 _HALVINGS = 3
 _DECIMALS = {"m": 7, "1": 5}  # a thousandth of the markers' noise; of a logarithm
 

@@ -82,8 +82,8 @@ def pairs_table(content):
         "Pairs of models. Distance: of the ensembles; chance: the distance that 95 of 100 random divisions of the same "
         "samples into two ensembles stay below. Difference: of the same sample by both models, mean over times and "
         "blocks, median over the n samples that both ran, with limits by order statistics. Floor: the same difference "
-        "of one sample from its twin, at half the time step, by each of the two models. Parting: when the same sample "
-        f"by both models is first distinguished, median. {MISSING}: too few samples, or no twin.",
+        "of one sample from its replicate at half the time step, by each of the two models. Parting: when the same sample "
+        f"by both models is first distinguished, median. {MISSING}: too few samples, or no replicate.",
         (
             "Case", "Models", "Distance [mm]", "Chance [mm]", "Difference [mm]", "n", "Floors [mm]", "Parting [s]",
         ),
@@ -111,7 +111,7 @@ def two_levels_table(content):
         "taken over times the coefficient (a control variate, Cochran 1977), with limits of 95 %. Gain: the variance "
         "of the mean alone over that with the help; so many times the samples of the model would do as much. Cases "
         "where a sample of either model did not complete are left out.",
-        ("Case", "Model", "n", "Mean [mm]", "With the help [mm]", "Correlation", "Coefficient", "Gain in variance"),
+        ("Case", "Model", "n", "Mean [mm]", "With the help [mm]", "Correlation", "Coefficient", "Variance ratio"),
         tuple(rows), "llrrrrrr",
     )  # fmt: skip
 

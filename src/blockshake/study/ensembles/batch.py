@@ -18,14 +18,14 @@ from blockshake.study.ensembles.ensemble import DECIMALS, as_sample, run_alone
 from blockshake.study.sampling.sample_parameters import used_parameters
 from blockshake.study.sampling.sample_table import load_design
 
-SAMPLES, TWIN, CALIBRATION, FRAGILITY = "samples", "twin", "calibration", "fragility"
+SAMPLES, REPLICATE, CALIBRATION, FRAGILITY = "samples", "replicate", "calibration", "fragility"
 """Parts of a study, by which its runs are counted."""
-HALF_STEP = "half-step"  # batch of the twin: the first sample at half the time step
+HALF_STEP = "half-step"  # batch of the replicate: the first sample at half the time step
 
 
 def part_of(batch):
-    """Part of a study that a batch is counted in: `TWIN` or `SAMPLES`."""
-    return TWIN if batch == HALF_STEP else SAMPLES
+    """Part of a study that a batch is counted in: `REPLICATE` or `SAMPLES`."""
+    return REPLICATE if batch == HALF_STEP else SAMPLES
 
 
 def part_name(part, case, model):

@@ -1,4 +1,4 @@
-"""Section on an extended study: changes by the cause, against what was measured, and its gain on measured tests."""
+"""Section on an extended study: changes by the cause, against what was measured, and its skill on measured tests."""
 
 import numpy as np
 

@@ -14,7 +14,6 @@ from blockshake.study.limit_states.settings import MEASURES, LimitState, has_lim
 from blockshake.study.sampling.sample_parameters import structure_parameters
 
 PASSED, EXCEEDED, UNKNOWN = 0, 1, -1
-_FITTED = ("median", "safe", "dispersion", "curve")
 _DESCRIBED = {
     "value": ("measure of the limit state, in unit", ""),
     "exceeded": ("1 beyond the limit, 0 not, -1 where the run ended before it was known", "1"),

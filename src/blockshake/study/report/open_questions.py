@@ -142,7 +142,7 @@ def _by_model(cases, count):
 
 
 def _chaotic(stripes):
-    """Time by case, or level, and model at which a sample and its twin part within the window [s]."""
+    """Time by case, or level, and model at which a sample and its replicate part within the window [s]."""
     return [
         (stripe.name, model, float(time))
         for stripe in stripes
