@@ -91,8 +91,8 @@ def test_progress_is_told_by_case_with_the_time_left(folder, workflow, capsys):
     )
     assert main(["study", "study.yaml", "--cores", "2"]) == 0
     told = [line for line in capsys.readouterr().out.splitlines() if ": 10 of 10; " in line]
-    # nothing is known of LS-DEM; strong runs last twice as long as weak ones, replicates take half the step: 12 x 4 s and
-    # 2 x 2 s on 2 cores
+    # nothing is known of LS-DEM; strong runs last twice as long as weak ones, replicates take half the step:
+    # 12 x 4 s and 2 x 2 s on 2 cores
     assert told[0] == "samples of weak, nscd-rigid: 10 of 10; 10 of 48 runs; more than 26 s for the runs left"
     # and 12 x 10 s and 2 x 5 s by LS-DEM
     assert told[1] == "samples of weak, ls-dem: 10 of 10; 20 of 48 runs; about 2 min for the runs left"

@@ -15,7 +15,7 @@ from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.comparison.comparison import compare_models
 from blockshake.study.ensembles.case_input import measured_input
 from blockshake.study.ensembles.coverage import coverage
-from blockshake.study.ensembles.ensemble import join_batches, run_as_sample, sample_figures
+from blockshake.study.ensembles.ensemble import as_sample, join_batches, run_alone, sample_figures
 from blockshake.study.ensembles.envelope import envelope
 from blockshake.study.ensembles.shown_samples import shown_samples
 from blockshake.study.fragility.climb import gathered
@@ -66,7 +66,7 @@ def climbed_and_fitted():
 def ensemble_of(runs, design):
     """Ensemble of runs as the first samples of a design, by row."""
     rows = zip(runs, design.iterrows(), strict=False)
-    return join_batches([run_as_sample(run, sample, row, "slab-face") for run, (sample, row) in rows])
+    return join_batches([as_sample(run_alone(run, "slab-face"), sample, row) for run, (sample, row) in rows])
 
 
 class FakeStudy:
@@ -156,7 +156,7 @@ class FakeStudy:
             "tests:\n  - {name: virtual, file: virtual.nc, motion: basso-tirreno, scale: 2.0, role: fit}\n",
         )
         write_dataset(self.results / "inputs" / f"{name}.nc", measured_input(case, case["measured"]))
-        ensembles, twins = {}, {}
+        ensembles, replicates = {}, {}
         for model in MODELS:
             count = case["samples"].get(model, self.size)
             runs = [
@@ -167,8 +167,8 @@ class FakeStudy:
                 end(runs[4], "not-converged", "2.0 % of the steps ended above a residual", self.time[-1])
             ensemble = ensembles[model] = ensemble_of(runs, self.design)
             if count >= SURE_FROM:
-                twin = self.run(structure, model, 1.05 * STRENGTH[model])
-                twins[model] = ensemble_of([twin], self.design)
+                replicate = self.run(structure, model, 1.05 * STRENGTH[model])
+                replicates[model] = ensemble_of([replicate], self.design)
             for kind, result in (
                 ("envelopes", envelope(ensemble, 0.4)),
                 ("samples", sample_figures(ensemble)),
@@ -184,7 +184,7 @@ class FakeStudy:
             log = self.logs / "simulate_batch" / model / name / f"000-{count - 1:03d}.log"
             write_text(log, f"Took 50.0 s, {CPU_TIME} CPU s.\n")
 
-        differences = compare_models(ensembles, twins, (test, 1e-4))
+        differences = compare_models(ensembles, replicates, (test, 1e-4))
         write_dataset(self.results / "differences" / f"{name}.nc", differences)
 
     def run(self, structure, model, strength):

@@ -1,4 +1,4 @@
-"""Sealed tests are opened after the decision: where their blocks stood for their simulation, readings for the skill score."""
+"""Sealed tests are opened after the decision: places of their blocks for simulation, readings for the skill score."""
 
 import re
 import subprocess

@@ -208,7 +208,7 @@ def files_of_models(wildcards):
     """These, and the replicate of every model that has one."""
     folder, case = f"results/{wildcards.study}/runs", wildcards.case
     return batches_of_models(wildcards) | {
-        f"twin {model}": f"{folder}/{model}/{case}/{HALF_STEP}.nc"
+        f"replicate {model}": f"{folder}/{model}/{case}/{HALF_STEP}.nc"
         for model in MODELS
         if CHECKED.has_replicate(model, case)
     }

@@ -74,7 +74,7 @@ rule simulate_clean:
 
 
 rule simulate_nominal:
-    """Simulated tests of one structure under one motion by nominal models, and twins."""
+    """Simulated tests of one structure under one motion by nominal models, and replicates."""
     input:
         tests=lambda wildcards: test_files(wildcards.campaign, "open"),
         kernels=lambda wildcards: kernels(wildcards.solver),

@@ -6,7 +6,7 @@ from blockshake.study.ensembles.levels import levels_of
 with logging_to(snakemake.log[0]):
     input, params = snakemake.input, snakemake.params
     batches = {model: input[f"batches {model}"] for model in params.models}
-    twins = {model: input.get(f"twin {model}") for model in params.models}
+    replicates = {model: input.get(f"replicate {model}") for model in params.models}
     levels = levels_of(params.case, params.seed, params.size)
-    found = compare_case(batches, twins, params.measured, input.base, levels)
+    found = compare_case(batches, replicates, params.measured, input.base, levels)
     write_dataset(snakemake.output[0], found)

@@ -24,17 +24,17 @@ def ensembles(make_run, gather):
     }
 
 
-def twin_of(ensembles, model):
+def replicate_of(ensembles, model):
     """Twin of the first sample of a model that is 1 mm off, from half of the window on."""
-    twin = ensembles[model].isel(sample=[0]).copy(deep=True)
-    twin["marker_displacement"].loc[{"marker": BLOCK, "axis": "x", "time": slice(1.0, None)}] += 1e-3
-    return twin
+    replicate = ensembles[model].isel(sample=[0]).copy(deep=True)
+    replicate["marker_displacement"].loc[{"marker": BLOCK, "axis": "x", "time": slice(1.0, None)}] += 1e-3
+    return replicate
 
 
 @pytest.fixture
 def compared(ensembles, make_run):
-    twins = {"ls-dem": twin_of(ensembles, "ls-dem")}
-    return compare_models(ensembles, twins, (make_run(LEVELS[1]), NOISE))
+    replicates = {"ls-dem": replicate_of(ensembles, "ls-dem")}
+    return compare_models(ensembles, replicates, (make_run(LEVELS[1]), NOISE))
 
 
 def test_a_shift_is_measured_in_ensembles_and_in_runs(compared):
@@ -95,7 +95,7 @@ def test_distances_are_made_level_by_level(ensembles, tmp_path):
     assert int(found["counted"].sel(level=6.0, model="ls-dem")) == 2
 
 
-def test_floor_and_horizon_are_those_of_the_twin(compared):
+def test_floor_and_horizon_are_those_of_the_replicate(compared):
     at = compared.sel(model="ls-dem")
     # 201 of 401 times from 1 s on
     assert float(at["floor"]) == pytest.approx(1e-3 * 201 / 401, rel=1e-9)
@@ -116,8 +116,8 @@ def test_the_nearer_model_has_the_lower_score(compared):
 
 
 def test_same_ensembles_same_numbers_and_every_number_has_its_unit(ensembles, compared, make_run):
-    twins = {"ls-dem": twin_of(ensembles, "ls-dem")}
-    assert compared.identical(compare_models(ensembles, twins, (make_run(LEVELS[1]), NOISE)))
+    replicates = {"ls-dem": replicate_of(ensembles, "ls-dem")}
+    assert compared.identical(compare_models(ensembles, replicates, (make_run(LEVELS[1]), NOISE)))
     assert all({"units", "long_name"} <= set(one.attrs) for one in compared.values())
 
 

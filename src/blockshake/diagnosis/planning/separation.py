@@ -107,7 +107,7 @@ class NominalCampaign:
 
 
 def _odds(factor, apart, prior=0.0):
-    """Coarsened odds of a cause over a rival with a smaller log Bayes factor, and their standard deviation by the sensors' noise.
+    """Coarsened odds of a cause over a less probable rival, and their standard deviation by the sensors' noise.
 
     ``prior`` is by how much the rival's score exceeds its log Bayes factor more than the cause's does.
     """

@@ -73,7 +73,7 @@ def _size_fact(diagnosed):
 
 
 def _gain_fact(diagnosed):
-    """Skill score on the responses, or on a sensor's readings; one on forces alone is no prediction, and no headline."""
+    """Skill score on the responses, or on a sensor's readings; that on forces alone is no prediction."""
     label, verdict = "Error on sealed tests that the cause removes", diagnosed.verdict
     gain, forces = verdict.gain, verdict.row_gain and percent_words(verdict.row_gain.recalibrated)
     if gain is None and forces:

@@ -106,7 +106,7 @@ def models_of(found):
 
 
 def _assumed(name, study, cases):
-    """Value that the study takes: a mean friction, the wave speed's stiffness, restitution and concavity of a structure.
+    """Value that the study takes: a mean friction, the wave speed's stiffness, a structure's restitution and concavity.
 
     The structure is the first one of the ``cases``, for a concavity the first of boxes.
     """

@@ -54,8 +54,8 @@ _DESCRIBED = {
     "history_difference": ("mean difference of the same sample by both models, median over the samples", "m"),
     "parting_time": ("first time that the same sample by both models differs, median over the samples", "s"),
     "common": ("samples that both models ran", "1"),
-    "floor": ("mean difference of a sample from its twin of half the step", "m"),
-    "horizon": ("first time that a sample differs from its twin of half the step", "s"),
+    "floor": ("mean difference of a sample from its replicate of half the step", "m"),
+    "horizon": ("first time that a sample differs from its replicate of half the step", "s"),
     "mean_peak": ("mean of the largest displacement of any marker along x relative to the slab", "m"),
     "two_level_peak": ("the same mean with rigid NSCD as a control variate", "m"),
     "coefficient": ("of the control variate", "1"),
@@ -65,15 +65,15 @@ _DESCRIBED = {
 }
 
 
-def compare_case(batches, twins, named, base, levels):
+def compare_case(batches, replicates, named, base, levels):
     """`compare_models` of a case, from files.
 
-    ``batches``: files of its samples by model, of which the first `MOST` are compared; ``twins``: file of the batch
-    `HALF_STEP` by model, or None; ``named`` and ``base`` as of `coverage_of_case`, None where the case is
+    ``batches``: files of its samples by model, of which the first `MOST` are compared; ``replicates``: file of the
+    batch `HALF_STEP` by model, or None; ``named`` and ``base`` as of `coverage_of_case`, None where the case is
     compared with no test; ``levels`` from `levels_of`: the result is along ``level`` where there are any.
     """
     ensembles = {model: first_samples(files) for model, files in batches.items()}
-    loaded = {model: first_samples([path]) for model, path in twins.items() if path}
+    loaded = {model: first_samples([path]) for model, path in replicates.items() if path}
     measured = measured_on_clock(named, base) if named else None
     return by_level(
         levels,
@@ -97,14 +97,14 @@ def first_samples(files):
     return join_batches(parts)
 
 
-def compare_models(ensembles, twins, measured):
+def compare_models(ensembles, replicates, measured):
     """Hold the models of one case against each other.
 
     Parameters
     ----------
     ensembles : dict of str to xarray.Dataset
         By model, from `join_batches`.
-    twins : dict of str to xarray.Dataset
+    replicates : dict of str to xarray.Dataset
         By model, from `join_batches`: a sample of the model once more, at half the time step; any may be missing.
     measured : tuple of (xarray.Dataset, float) or None
         Readings on the models' clock and the markers' noise, from `measured_on_clock`.
@@ -118,7 +118,7 @@ def compare_models(ensembles, twins, measured):
         alone, over the ``changed(model)`` samples of both: ``peak_change``, ``residual_change`` and
         ``width_change(model, marker)``, NaN for all others. Of two
         models, ``other`` the second: ``distance``, the energy distance of the ensembles, with ``distance_chance``;
-        ``history_difference`` and ``parting_time`` of the ``common`` samples. Of the numerics, NaN without twins:
+        ``history_difference`` and ``parting_time`` of the ``common`` samples. Of the numerics, NaN without replicates:
         ``floor`` and ``horizon(model)``. Against the measured curves, NaN without any: ``score(model)``. Of models
         with fewer samples than rigid NSCD those of `two_levels`. Limits of 95 %, ``NAME_interval(bound, ...)``: of
         medians by order statistics, of width and score by bootstrap. NaN where an ensemble has fewer than three
@@ -136,7 +136,7 @@ def compare_models(ensembles, twins, measured):
             two_levels(ensembles),
             _changes(counted, seed),
             _pairs(counted, PARTED_BY * noise, seed),
-            _numerics(counted, twins, PARTED_BY * noise),
+            _numerics(counted, replicates, PARTED_BY * noise),
             _scores(counted, None if measured is None else measured[0], seed),
         ],
         compat="equals",
@@ -257,19 +257,19 @@ def parting_time(time, curve, other, limit):
     return float(time[np.argmax(parted)]) if parted.any() else np.inf
 
 
-def _numerics(counted, twins, limit):
-    """Floor and horizon of each model's numerics, NaN without a twin, or where it or its sample failed."""
+def _numerics(counted, replicates, limit):
+    """Floor and horizon of each model's numerics, NaN without a replicate, or where it or its sample failed."""
     models = list(counted)
     floor, horizon = np.full((2, len(models)), np.nan)
     for row, model in enumerate(models):
-        if model not in twins:
+        if model not in replicates:
             continue
-        twin = counted_samples(twins[model])
-        shared = np.intersect1d(twin["sample"], counted[model]["sample"])
+        replicate = counted_samples(replicates[model])
+        shared = np.intersect1d(replicate["sample"], counted[model]["sample"])
         if shared.size:
-            sample, other = (block_curves(one.sel(sample=shared)) for one in (counted[model], twin))
+            sample, other = (block_curves(one.sel(sample=shared)) for one in (counted[model], replicate))
             floor[row] = mean_differences(sample, other).mean()
-            horizon[row] = parting_time(twin["time"].to_numpy(), sample[0], other[0], limit)
+            horizon[row] = parting_time(replicate["time"].to_numpy(), sample[0], other[0], limit)
     return xr.Dataset({"floor": ("model", floor), "horizon": ("model", horizon)}, {"model": models})
 
 

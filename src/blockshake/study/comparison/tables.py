@@ -82,8 +82,8 @@ def pairs_table(content):
         "Pairs of models. Distance: of the ensembles; chance: the distance that 95 of 100 random divisions of the same "
         "samples into two ensembles stay below. Difference: of the same sample by both models, mean over times and "
         "blocks, median over the n samples that both ran, with limits by order statistics. Floor: the same difference "
-        "of one sample from its replicate at half the time step, by each of the two models. Parting: when the same sample "
-        f"by both models is first distinguished, median. {MISSING}: too few samples, or no replicate.",
+        "of one sample from its replicate at half the time step, by each of the two models. Parting: when the same "
+        f"sample by both models is first distinguished, median. {MISSING}: too few samples, or no replicate.",
         (
             "Case", "Models", "Distance [mm]", "Chance [mm]", "Difference [mm]", "n", "Floors [mm]", "Parting [s]",
         ),

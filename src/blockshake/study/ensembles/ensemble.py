@@ -19,11 +19,6 @@ DECIMALS = {"m": 7, "1": 8}
 _OF_ONE_RUN = ("status", "reason", "settled", "end_time", "sample", "parameters")
 
 
-def run_as_sample(run, sample, values, slab_marker):
-    """`as_sample` of the `run_alone` of a run: an ensemble of one, which `join_batches` joins to others."""
-    return as_sample(run_alone(run, slab_marker), sample, values)
-
-
 def run_alone(run, slab_marker):
     """Histories and figures that an ensemble keeps of a run, whatever sample it stands for.
 
@@ -81,7 +76,7 @@ def join_batches(batches, without=(), chosen=None):
     Parameters
     ----------
     batches : sequence of xarray.Dataset or path
-        From here or from `run_as_sample`, of one structure, motion, model and design.
+        From here or from `as_sample`, of one structure, motion, model and design.
     without : sequence of str
         Variables that are not read from files, such as `POSES`: half of what an ensemble holds.
     chosen : dict of str to list, optional
@@ -90,7 +85,7 @@ def join_batches(batches, without=(), chosen=None):
     Returns
     -------
     xarray.Dataset
-        As from `run_as_sample`, samples rising; figures of the computation are NaN where a run has none. Attributes:
+        As from `as_sample`, samples rising; figures of the computation are NaN where a run has none. Attributes:
         those that all runs share.
 
     Raises
