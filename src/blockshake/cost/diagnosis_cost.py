@@ -29,7 +29,7 @@ def campaign_cost(folder, effort):
 
 
 def diagnosis_cost(folder, effort, tried):
-    """CPU time of a diagnosis's simulations, clean campaigns and outcomes with them, if none of them is made yet.
+    """CPU time of all simulations of a diagnosis if none is made yet, from short trials on this machine.
 
     Parameters
     ----------
@@ -38,17 +38,19 @@ def diagnosis_cost(folder, effort, tried):
     effort : str
         One of `EFFORTS`.
     tried : dict
-        Ensembles of earlier campaigns, which cost nothing again; this campaign's are added.
+        CPU seconds of one draw by digest of the test and model: a test that an earlier campaign had is simulated once
+        and costs nothing again. This campaign's are added.
 
     Returns
     -------
     list of CostPart
-        The last one of a diagnosis that simulates ensembles only takes place where a cause is found.
+        Clean campaigns or outcomes first, then ensembles by test and model, then tests with the cause, which are
+        simulated only if a cause is found.
     """
     plan = plan_diagnosis(folder, effort)
-    first = _outcomes(plan) if plan.campaign.kind.batches else _clean(plan)
+    before = _outcome_parts(plan) if plan.campaign.kind.batches else _clean_parts(plan)
     if not plan.tests:
-        return first
+        return before
     count, parts, means = plan.effort.draws + plan.effort.twins, [], []
     for name, planned in plan.tests.items():
         for model in MODELS:
@@ -59,14 +61,14 @@ def diagnosis_cost(folder, effort, tried):
             means.append(tried[key])
     more = plan.runs_of_cause
     return [
-        *first,
+        *before,
         *parts,
         CostPart("tests with a cause, where one is found", more, more * float(np.mean(means))),
     ]
 
 
-def _clean(plan):
-    """Nominal models of all open tests, judged as if measured; tried by one test."""
+def _clean_parts(plan):
+    """`CostPart` of clean campaigns by model, scaled from a trial of one test by the duration of all."""
     if not plan.clean:
         return []
     names = list(plan.opened)
@@ -74,18 +76,18 @@ def _clean(plan):
     share = sum(test.duration for test in plan.opened.values()) / plan.opened[tried].duration
     read = read_open_tests(plan.campaign, [tried])
     test = {tried: plan.opened[tried]}, {tried: read_channels(read.tests[tried])}
-    seconds = {model: _second_time(simulate_clean_runs, *test, model, 1) for model in MODELS}
+    seconds = {model: _warm_seconds(simulate_clean_runs, *test, model, 1) for model in MODELS}
     words = f"clean campaigns of {count_words(len(names), 'test')}"
     return [
         CostPart(f"{words}, {model}", plan.clean, plan.clean * share * one) for model, one in seconds.items()
     ]
 
 
-def _outcomes(plan):
-    """Tests of which the outcome alone is known; tried by some of them."""
+def _outcome_parts(plan):
+    """`CostPart` of tests with a binary outcome by model, scaled from a trial of the first ones by their number."""
     campaign, draws = plan.campaign, plan.effort.outcomes
     few, count = replace(campaign, tests=dict(list(campaign.tests.items())[:_TRIED])), len(campaign.tests)
-    seconds = {model: _second_time(simulate_outcomes, few, 0, model, draws) for model in solvers_of(draws)}
+    seconds = {model: _warm_seconds(simulate_outcomes, few, 0, model, draws) for model in solvers_of(draws)}
     words = f"outcomes of {count_words(count, 'test')}"
     return [
         CostPart(f"{words}, {model}", count * draws, count / len(few.tests) * one)
@@ -93,8 +95,8 @@ def _outcomes(plan):
     ]
 
 
-def _second_time(simulate, *arguments):
-    """CPU seconds of simulations into a new store, once they have loaded the kernels into another."""
+def _warm_seconds(simulate, *arguments):
+    """CPU seconds of simulations into an empty store, measured the second time: the first one loads the kernels."""
     for _ in range(2):
         with tempfile.TemporaryDirectory() as folder:
             spent = cpu_seconds(partial(simulate, *arguments, Store(folder, "", str)))

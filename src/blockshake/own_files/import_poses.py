@@ -36,7 +36,11 @@ def is_pose(key, structure):
 
 
 def filmed_body(source, body, posed, import_map, structure, where):
-    """`FilmedBody` of a body that has markers in the structure."""
+    """`FilmedBody` of a body of the structure, whose markers are to read what its pose gives.
+
+    ``source``: table of the test, by its name; ``posed``: keys of the map's columns that are parts of poses; ``where``:
+    file of the map, for messages. A body without markers in the structure is refused.
+    """
     if not any(marker.body == body for marker in structure.file.markers):
         raise InputError(where, f"columns.{body}.x", f"expected markers of {body} in the structure")
     keys = [key for key in posed if key.startswith(f"{body}.")]
@@ -47,7 +51,10 @@ def filmed_body(source, body, posed, import_map, structure, where):
 
 
 def markers_of_poses(filmed, source, body, import_map, structure, where):
-    """Displacements (n_times, 3) [m] of all markers of a body by name."""
+    """Displacements (n_times, 3) [m] of all markers of a body, by name, from its `FilmedBody`.
+
+    They count from the mean over ``rest`` of the map, else from the first known reading.
+    """
     found = {}
     for marker in structure.file.markers:
         if marker.body != body:
@@ -63,7 +70,10 @@ def markers_of_poses(filmed, source, body, import_map, structure, where):
 
 
 def check_poses(filmed, slab, import_map, structure, where):
-    """Hold poses, `FilmedBody` by name, against the structure at the start, and places against rotations from then on.
+    """Compare poses, `FilmedBody` by name, with the structure at the start, and rotations with places from then on.
+
+    A block that rocks turns about its foot: with rotations of another unit, sign, order or conjugate its foot would
+    slide. The setting that makes the feet stand is named in the refusal.
 
     ``slab`` (n_times, 3) is the displacement of the driven body by its markers, NaN where unknown [m]; a driven body
     without poses moves so, without a turn.
@@ -71,8 +81,8 @@ def check_poses(filmed, slab, import_map, structure, where):
     Raises
     ------
     InputError
-        A body that begins turned away from the structure; rotations with which blocks would slide on their feet, while
-        others of the same readings stand.
+        A body that begins turned away from the structure's pose, or rotations by which feet slide where another reading
+        of the same columns lets them stand.
     """
     for body, poses in filmed.items():
         _check_start(body, poses, import_map, structure, where)
@@ -101,7 +111,7 @@ def check_poses(filmed, slab, import_map, structure, where):
     wrong = f"{name} leans one way while its centroid goes another: {slides}"
     if f"{name}.{ANGLE}" in import_map.columns:
         raise InputError(
-            where, f"columns.{name}.{ANGLE}", f"expected it {_turned_round(import_map, name)}; {wrong}"
+            where, f"columns.{name}.{ANGLE}", f"expected it {_other_sign(import_map, name)}; {wrong}"
         )
     if np.array_equal(turn, -np.eye(3)) and len(turns) == len(free):
         other = next(way for way in _QUATERNIONS if way != import_map.quaternion)
@@ -115,12 +125,13 @@ def check_poses(filmed, slab, import_map, structure, where):
     raise InputError(where, f"columns.{name}.q{AXES[axis]}", f"expected {likely}, by its motion; {wrong}")
 
 
-def _turned_round(import_map, name):
+def _other_sign(import_map, name):
+    """Setting of a body's angle that reverses it."""
     return "not reversed" if import_map.columns[f"{name}.{ANGLE}"].reversed else "reversed"
 
 
 def _angle_unit(fit, free, import_map, names, noise):
-    """Words on angles that fit the places in another unit alone; None where they fit, or nothing turns."""
+    """Expectation of another unit of angles, by which feet do not slide; None where the stated one fits."""
     angles = [body for body in free if f"{names[body]}.{ANGLE}" in import_map.columns]
     if not angles or not fit.worth_a_look(noise):
         return None
@@ -138,7 +149,7 @@ def _angle_unit(fit, free, import_map, names, noise):
 
 
 def _check_start(body, poses, import_map, structure, where):
-    """Refuse a body that begins turned by more than a survey may tell."""
+    """Refuse a body whose first pose is turned from the structure's by more than a survey may have."""
     start = rotation_matrices(structure.orientation[structure.body_names.index(body)])
     first = poses.rotation[np.isfinite(poses.rotation[:, 0, 0]).argmax()]
     if not np.isfinite(first).all():

@@ -1,4 +1,4 @@
-"""Blocks as faces in space, and their colours: one a material, grey for what is driven, distinguished in grey too."""
+"""Blocks as faces in space, and their colours: one a material, grey for driven bodies, apart in a grey print too."""
 
 from typing import NamedTuple
 

@@ -1,7 +1,8 @@
-"""Answers of tests on parameters: scores by value, whether these differ beyond chance, and values that are not refused.
+"""Which values of a parameter measured tests allow: scores by value, a permutation test, and a conformal interval.
 
-Chance comes from shuffling: with the parameters of the samples dealt anew among their runs, no score knows a value.
-The values that are not refused come from samples that stand for the test: their parameters are known.
+The permutation test asks whether the scores differ beyond chance: with the parameters of the samples exchanged at
+random among their runs, no score depends on a value. The conformal interval takes each sample for the measured test in
+turn, since its parameters are known.
 """
 
 from dataclasses import dataclass
@@ -12,9 +13,9 @@ import numpy as np
 from blockshake.statistics.resampling import rank_chance
 from blockshake.statistics.scores import ensemble_score
 
-LEVEL = 0.95  # of a whole family of questions, and of each range of values that are not refused
+LEVEL = 0.95  # of all hypotheses together, and of each interval
 SHARES = np.linspace(0.0, 1.0, 41)  # of a parameter's range, at which scores are taken
-_SHUFFLES = 999
+_PERMUTATIONS = 999
 _HALF_WIDTH = 0.2  # of a parameter's range, within which samples count for a value
 
 
@@ -80,7 +81,7 @@ def weighted_scores(weights, found):
     """`ensemble_score` of weighted samples, mean over the places of `distances`, shape (...,) [1].
 
     ``weights`` (..., n_samples); ``found``: `Distances`. Samples without an answer have no weight. With equal weights
-    the score is 0.5 in the mean where the test is one more of the samples' kind.
+    the score is 0.5 in the mean where the test is exchangeable with the samples.
     """
     return ensemble_score(*map(np.nan_to_num, found), weights * np.isfinite(found.to_test))
 
@@ -100,19 +101,19 @@ def chance_of_test(found):
 
 @dataclass(frozen=True)
 class Answer:
-    """Answer of some tests on a parameter."""
+    """Scores, p-value and interval of one parameter by some tests."""
 
     score: np.ndarray  # float64 (n_shares,); mean over the tests, as they count, at `SHARES` of the range [1]
     limit: float  # by which the score of the true value exceeds the lowest one at most, at `LEVEL` [1]
-    # that scores differ as much where no test depends on the parameter, all questions taken together [1]
+    # p-value of scores that differ as much though no test depends on the parameter, for all hypotheses together [1]
     chance: float
-    # lower, upper: shares of the range between which no value is refused; 0 and 1 where nothing is known [1]
+    # lower, upper: ends of the conformal interval as shares of the range; 0 and 1 where nothing is known [1]
     lower: float
     upper: float
 
     @property
     def constrained(self):
-        """Whether the tests tell of the parameter at all."""
+        """Whether the scores differ beyond chance."""
         return self.chance <= 1.0 - LEVEL
 
     @property
@@ -122,7 +123,7 @@ class Answer:
 
 
 def answer_hypotheses(hypotheses, seed):
-    """`Answer`: which parameters the readings constrain, at a family-wise error rate over all questions.
+    """`Answer` by hypothesis: whether the score depends on the parameter, and the values that are kept.
 
     Parameters
     ----------
@@ -130,70 +131,70 @@ def answer_hypotheses(hypotheses, seed):
         Shares of the parameter's range at which the samples lie, shape (n_samples,), and the tests that are used.
         The samples are the same in all.
     seed : int
-        The shuffles.
+        Of the permutations.
 
     Notes
     -----
-    A question's statistic is the spread of its scores over the range, in standard deviations of the shuffled ones from
-    their mean. Its chance is the share of the shuffles in which the largest statistic of all questions is as large
-    (Westfall and Young 1993). Tests count by one over the standard deviation of their shuffled scores: a reading that
-    follows other parameters, or no parameter at all, scatters more and counts for less.
+    The statistic of a hypothesis is the range of its scores over the values, standardised by the permuted ones. Its
+    p-value is the share of the permutations in which the largest statistic of all hypotheses is as large (max-T,
+    Westfall and Young 1993), which keeps the family-wise error rate. Tests are weighted by one over the standard
+    deviation of their permuted scores: a reading that follows other parameters, or none, scatters more.
     """
     if not hypotheses:
         return {}
     size = len(next(iter(hypotheses.values()))[0])
     generator = np.random.default_rng(seed)
-    permutations = np.array([generator.permutation(size) for _ in range(_SHUFFLES)])
-    scores, counts, constrained, shuffled = {}, {}, {}, []
+    permutations = np.array([generator.permutation(size) for _ in range(_PERMUTATIONS)])
+    scores, test_weights, statistics, permuted_statistics = {}, {}, {}, []
     for name, (shares, tests) in hypotheses.items():
         weights = weights_near(shares, SHARES)
         permuted = weights[:, permutations].transpose(1, 0, 2)
         by_test = np.array([weighted_scores(permuted, test) for test in tests])
-        counts[name] = 1.0 / np.maximum(by_test.std(axis=1).mean(axis=1), np.finfo(float).tiny)
-        scores[name] = np.average([weighted_scores(weights, test) for test in tests], 0, counts[name])
-        spreads = np.ptp(np.average(by_test, 0, counts[name]), axis=-1)
+        test_weights[name] = 1.0 / np.maximum(by_test.std(axis=1).mean(axis=1), np.finfo(float).tiny)
+        scores[name] = np.average([weighted_scores(weights, test) for test in tests], 0, test_weights[name])
+        spreads = np.ptp(np.average(by_test, 0, test_weights[name]), axis=-1)
         mean, deviation = spreads.mean(), max(spreads.std(), np.finfo(float).tiny)
-        constrained[name] = (np.ptp(scores[name]) - mean) / deviation
-        shuffled.append((spreads - mean) / deviation)
-    largest = np.max(shuffled, axis=0)
+        statistics[name] = (np.ptp(scores[name]) - mean) / deviation
+        permuted_statistics.append((spreads - mean) / deviation)
+    largest = np.max(permuted_statistics, axis=0)
     answers = {}
     for name, (shares, tests) in hypotheses.items():
-        chance = float(rank_chance(constrained[name], largest))
+        chance = float(rank_chance(statistics[name], largest))
         score, limit, lower, upper = scores[name], np.inf, 0.0, 1.0
         if chance <= 1.0 - LEVEL:
-            limit = excess_of_truth(shares, tests, counts[name])
+            limit = excess_of_truth(shares, tests, test_weights[name])
             kept = np.flatnonzero(score - score.min() <= limit)
             lower, upper = float(SHARES[kept[0]]), float(SHARES[kept[-1]])
         answers[name] = Answer(score, limit, chance, lower, upper)
     return answers
 
 
-def excess_of_truth(shares, tests, counts):
-    """By how much the score of a true value exceeds the lowest one at most, at `LEVEL` [1].
+def excess_of_truth(shares, tests, test_weights):
+    """Conformal limit: by how much the score of the true value exceeds the lowest score at most, at `LEVEL` [1].
 
-    ``shares`` and ``tests`` as of a question of `answer_hypotheses`; ``counts``: how much each test counts.
+    ``shares`` and ``tests`` as of a hypothesis of `answer_hypotheses`; ``test_weights``: one for each test.
 
     Notes
     -----
-    Every sample stands for the tests once, the others predict its readings, and its own value is the truth. Readings of
-    the measured test are one more of the kind where the model is right, so that the true value is kept with the chance
-    `LEVEL` whatever the model (conformal inference: Vovk, Gammerman and Shafer 2005). The limit is infinite with too
+    Every sample takes the place of the tests once: the others predict its readings, and its own value is the truth. If
+    the model is right, the measured readings are exchangeable with those of the samples, and the true value is kept
+    with the probability `LEVEL` (conformal inference: Vovk, Gammerman and Shafer 2005). The limit is infinite with too
     few samples for that level.
     """
     weights = weights_near(shares, SHARES)
     excesses = []
     for sample, truth in enumerate(shares):
-        there = [place for place, test in enumerate(tests) if np.isfinite(test.to_test[sample])]
-        if there:
-            scores = [weighted_scores(weights, _standing(sample, tests[place])) for place in there]
-            score = np.average(scores, 0, counts[there])
+        answered = [place for place, test in enumerate(tests) if np.isfinite(test.to_test[sample])]
+        if answered:
+            scores = [weighted_scores(weights, _sample_as_test(sample, tests[place])) for place in answered]
+            score = np.average(scores, 0, test_weights[answered])
             excesses.append(np.interp(truth, SHARES, score) - score.min())
-    place = int(np.ceil(LEVEL * (len(excesses) + 1)))
-    return float(np.sort(excesses)[place - 1]) if place <= len(excesses) else np.inf
+    rank = int(np.ceil(LEVEL * (len(excesses) + 1)))
+    return float(np.sort(excesses)[rank - 1]) if rank <= len(excesses) else np.inf
 
 
-def _standing(sample, test):
-    """Distances of a test for which one of the samples stands."""
+def _sample_as_test(sample, test):
+    """`Distances` with a sample in place of the measured test, and left out of the ensemble."""
     to_sample = test.between[sample].copy()
     to_sample[sample] = np.nan
     return Distances(to_sample, test.between)

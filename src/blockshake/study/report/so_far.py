@@ -1,4 +1,4 @@
-"""The page of a study that runs: the cases that a model has done, until the report takes its place."""
+"""The page of a running study: results of the cases that are done, until the report takes its place."""
 
 from pathlib import Path
 
@@ -44,6 +44,6 @@ def write_so_far(study, results, html):
 
 
 def is_finished(html):
-    """Whether a page is there that is not one of a study that ran."""
+    """Whether the file is a finished report, not a page of this module."""
     path = Path(html)
     return path.is_file() and f'id="{_KEY}"' not in path.read_text(encoding="utf-8")
