@@ -131,7 +131,7 @@ def answer_hypotheses(hypotheses, seed):
         Shares of the parameter's range at which the samples lie, shape (n_samples,), and the tests that are used.
         The samples are the same in all.
     seed : int
-        Of the permutations.
+        Seed of the permutations.
 
     Notes
     -----
