@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from blockshake.cost import diagnosis_cost, study_cost
-from blockshake.cost.jobs import CostPart, planned_jobs
+from blockshake.cost.jobs import CostPart, measured_jobs, planned_jobs
 from blockshake.diagnosis.nominal.plan import EFFORTS, Plan, plan_diagnosis
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE
@@ -90,6 +90,23 @@ def test_jobs_are_those_of_the_workflow():
     part = planned_jobs([sys.executable, "-c", f"sum(range(10**7)); print('{table}')"])
     assert part.count == 11
     assert part.seconds > 0.0
+
+
+def test_jobs_that_left_a_benchmark_cost_what_it_states(tmp_path):
+    """Means by rule, whatever case they are of; a job that may have found its runs in the store tells nothing."""
+    rows = {
+        "small/make_envelope/ls-dem/one": 2.0,
+        "small/make_envelope/ls-dem/two": 4.0,
+        "small/make_report": 20.0,
+        "small/simulate_batch/ls-dem/one/000-004": 1.0,
+    }
+    for name, seconds in rows.items():
+        path = tmp_path / f"{name}.tsv"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(f"s\th:m:s\tcpu_time\n{3 * seconds}\t0:00:01\t{seconds}\n")
+    rules = {"make_envelope", "make_report", "simulate_batch", "decide"}
+    assert measured_jobs(tmp_path / "small", rules) == {"make_envelope": 3.0, "make_report": 20.0}
+    assert measured_jobs(tmp_path / "nowhere", rules) == {}
 
 
 def test_a_plan_that_fails_says_why():

@@ -174,7 +174,7 @@ class FakeStudy:
                 ("samples", sample_figures(ensemble)),
                 ("shown", shown_samples(ensemble)),
                 ("comparisons", coverage(test, ensemble, 1e-4)),
-                ("sensitivities", sensitivity(ensemble, list(self.design.columns))),
+                ("sensitivities", sensitivity(ensemble, self.design)),
             ):
                 write_dataset(self.results / kind / model / f"{name}.nc", result)
             made = [

@@ -43,7 +43,7 @@ def describe_fails(checkout, body):
 
 
 def drawing_fails(checkout, body):
-    broken(checkout, "study/sampling/latin_hypercube", "draw_design", body)
+    broken(checkout, "study/sampling/sample_table", "write_design", body)
 
 
 IMPORT = "from blockshake.errors import InputError\n"

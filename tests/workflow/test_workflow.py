@@ -20,6 +20,9 @@ import blockshake
 from blockshake.cli import main
 from blockshake.diagnosis.verdict.verdict import Misfit, Verdict, write_verdict
 from blockshake.files import PACKAGE, load_yaml
+from blockshake.study.config import load_config
+from blockshake.study.sampling.latin_hypercube import draw_design
+from blockshake.study.sampling.sample_table import load_design
 from blockshake.working_folder import hold
 
 ROOT = PACKAGE.parents[1]
@@ -55,7 +58,7 @@ def test_the_command_finds_all_made_and_reports_one_case(finished):
         )  # fmt: skip
         assert answer.returncode == 0, answer.stdout + answer.stderr
         assert f"; reports/{made}, " in answer.stdout.splitlines()[-1]
-        assert "samples;" not in answer.stdout  # nothing is simulated
+        assert "samples of" not in answer.stdout  # nothing is simulated
     assert (finished.folder / "reports" / "small-configuration-1.pdf").read_bytes().startswith(b"%PDF")
 
 
@@ -84,6 +87,35 @@ def test_a_finished_study_is_exported_as_a_research_object(finished, monkeypatch
     assert {"@id": "config/small.yaml"} in action["object"]
 
 
+def test_a_changed_distribution_reruns_what_has_a_use_for_it(finished):
+    """Configuration 1 has no steel, and rigid blocks have no modulus."""
+    before, made = finished.config, finished.folder / "results" / "small" / "design.csv"
+    settings = load_config(finished.folder / "config" / "small.yaml").ensemble.model_dump(mode="json")
+    distributions = settings["distributions"]
+
+    def due(name):
+        changed = distributions | {name: distributions[name] | {"mean": 1.1 * distributions[name]["mean"]}}
+        finished.write_config(before | {"ensemble": before["ensemble"] | {"distributions": changed}})
+        return {(job.rule, job.wildcards.get("model")) for job in finished.due()}
+
+    try:
+        found = due("friction.concrete.steel")
+        assert {"draw_samples", "measure_sensitivity", "write_responses"} <= {rule for rule, _ in found}
+        assert not {"simulate_batch", "climb_samples", "make_envelope"} & {rule for rule, _ in found}
+        found = due("materials.concrete.youngs_modulus")
+        assert ("simulate_batch", "ls-dem") in found
+        assert ("simulate_batch", "nscd-rigid") not in found
+        assert "calibrate_stiffness" in {rule for rule, _ in found}
+        assert "climb_samples" not in {rule for rule, _ in found}  # by rigid blocks
+        assert {model for rule, model in due("friction.concrete.concrete") if rule == "simulate_batch"} == {
+            "ls-dem", "nscd-rigid",
+        }  # fmt: skip
+    finally:
+        finished.write_config(before)
+    # the parsed design is that of the file, to the digit
+    assert draw_design(settings).values.equals(load_design(made))
+
+
 def test_second_run_does_nothing(finished):
     assert finished.jobs() == {}
 
@@ -94,6 +126,8 @@ def test_every_simulating_rule_leaves_a_log_with_its_cost(finished):
         log = finished.folder / "logs" / f"{batch}.log"
         assert "numba" in log.read_text()
         assert log.read_text().endswith(" CPU s.\n")
+        header, row = log.with_suffix(".tsv").read_text().splitlines()
+        assert float(dict(zip(header.split("\t"), row.split("\t"), strict=True))["cpu_time"]) > 0.0
 
 
 def test_report_of_one_case_needs_its_results_alone(finished):

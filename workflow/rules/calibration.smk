@@ -11,6 +11,8 @@ rule compare_open_tests:
         "results/{study}/open-tests/{model}/{case}.nc",
     log:
         "logs/{study}/compare_open_tests/{model}/{case}.log",
+    benchmark:
+        "logs/{study}/compare_open_tests/{model}/{case}.tsv",
     conda:
         "../envs/blockshake.yaml"
     resources:
@@ -44,6 +46,8 @@ rule calibrate_jointly:
         "results/{study}/calibration.json",
     log:
         "logs/{study}/calibrate_jointly.log",
+    benchmark:
+        "logs/{study}/calibrate_jointly.tsv",
     conda:
         "../envs/blockshake.yaml"
     params:

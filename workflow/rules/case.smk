@@ -4,7 +4,9 @@ from functools import cache
 
 from blockshake.dynamics.record_set import record_files
 from blockshake.files import check_past, content_digest
-from blockshake.study.ensembles.batch import HALF_STEP
+from blockshake.geometry.structure import load_structure
+from blockshake.study.ensembles.batch import HALF_STEP, batch_values
+from blockshake.study.sampling.latin_hypercube import drawn_design
 
 
 wildcard_constraints:
@@ -144,10 +146,34 @@ def run_files(wildcards):
         "base": (
             f"results/{study}/inputs/{case}.nc" if CASES[case]["measured"] else []
         ),
-        "design": f"results/{study}/design.csv",
         "stiffness": stiffness_file(model, study, case),
         "kernels": kernels(model),
     }
+
+
+@cache
+def design():
+    """Values of all samples, which rules take as parameters: a batch runs again where those change that it has a use for."""
+    return drawn_design(
+        config["ensemble"], source_of("draw_samples"), f"results/{STUDY}"
+    )
+
+
+@cache
+def loaded_structure(case):
+    """Structure of a case."""
+    return load_structure(CASES[case]["structure"])
+
+
+def values_of(case, model, batch=None, but=()):
+    """Sampled values of a case's batch, or of all samples, that a model has a use for, but for those of some kinds."""
+    with refusing():
+        values = design()
+        values = values[[name for name in values if name.split(".")[0] not in but]]
+        batch = batch or f"0-{len(values) - 1}"
+        return batch_values(
+            batch, values, loaded_structure(case), config["ensemble"]["linked"], model
+        )
 
 
 def stiffness_file(model, study, case):

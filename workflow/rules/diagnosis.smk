@@ -40,6 +40,8 @@ checkpoint decide:
         frozen="results/diagnosis/{campaign}/frozen.json",
     log:
         "logs/diagnosis/{campaign}/decide.log",
+    benchmark:
+        "logs/diagnosis/{campaign}/decide.tsv",
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -59,6 +61,8 @@ rule simulate_clean:
         "results/diagnosis/{campaign}/clean/{solver}.json",
     log:
         "logs/diagnosis/{campaign}/simulate_clean/{solver}.log",
+    benchmark:
+        "logs/diagnosis/{campaign}/simulate_clean/{solver}.tsv",
     conda:
         "../envs/blockshake.yaml"
     resources:
@@ -82,6 +86,8 @@ rule simulate_nominal:
         "results/diagnosis/{campaign}/ensembles/{number}-{solver}.nc",
     log:
         "logs/diagnosis/{campaign}/simulate_nominal/{number}-{solver}.log",
+    benchmark:
+        "logs/diagnosis/{campaign}/simulate_nominal/{number}-{solver}.tsv",
     conda:
         "../envs/blockshake.yaml"
     resources:
@@ -106,6 +112,8 @@ rule simulate_outcomes:
         "results/diagnosis/{campaign}/outcomes/{number}-{solver}.nc",
     log:
         "logs/diagnosis/{campaign}/simulate_outcomes/{number}-{solver}.log",
+    benchmark:
+        "logs/diagnosis/{campaign}/simulate_outcomes/{number}-{solver}.tsv",
     conda:
         "../envs/blockshake.yaml"
     resources:
@@ -130,6 +138,8 @@ rule describe_misfit:
         "results/diagnosis/{campaign}/misfit.nc",
     log:
         "logs/diagnosis/{campaign}/describe_misfit.log",
+    benchmark:
+        "logs/diagnosis/{campaign}/describe_misfit.tsv",
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -160,6 +170,8 @@ rule extend_model:
         "results/diagnosis/{campaign}/extended/{solver}.nc",
     log:
         "logs/diagnosis/{campaign}/extend_model/{solver}.log",
+    benchmark:
+        "logs/diagnosis/{campaign}/extend_model/{solver}.tsv",
     conda:
         "../envs/blockshake.yaml"
     resources:
@@ -191,6 +203,8 @@ rule measure_gain:
         summary="results/diagnosis/{campaign}/gain.json",
     log:
         "logs/diagnosis/{campaign}/measure_gain.log",
+    benchmark:
+        "logs/diagnosis/{campaign}/measure_gain.tsv",
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -254,6 +268,8 @@ rule make_diagnosis_report:
         ),
     log:
         "logs/diagnosis/{campaign}/make_diagnosis_report.log",
+    benchmark:
+        "logs/diagnosis/{campaign}/make_diagnosis_report.tsv",
     conda:
         "../envs/blockshake.yaml"
     params:

@@ -9,6 +9,8 @@ rule make_envelope:
         shown="results/{study}/shown/{model}/{case}.nc",
     log:
         "logs/{study}/make_envelope/{model}/{case}.log",
+    benchmark:
+        "logs/{study}/make_envelope/{model}/{case}.tsv",
     priority: for_first_picture
     conda:
         "../envs/blockshake.yaml"
@@ -52,6 +54,8 @@ rule measure_sensitivity:
         "results/{study}/sensitivities/{model}/{case}.nc",
     log:
         "logs/{study}/measure_sensitivity/{model}/{case}.log",
+    benchmark:
+        "logs/{study}/measure_sensitivity/{model}/{case}.tsv",
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -79,6 +83,8 @@ rule compare_models:
         "results/{study}/differences/{case}.nc",
     log:
         "logs/{study}/compare_models/{case}.log",
+    benchmark:
+        "logs/{study}/compare_models/{case}.tsv",
     conda:
         "../envs/blockshake.yaml"
     params:

@@ -5,7 +5,6 @@ rule climb_samples:
     """Some samples of a case, each at rising intensities until its potential collapse; finished runs are in the store."""
     input:
         unpack(case_files),
-        design="results/{study}/design.csv",
         stiffness=lambda wildcards: stiffness_file(
             FRAGILITY["model"], wildcards.study, wildcards.case
         ),
@@ -14,6 +13,8 @@ rule climb_samples:
         "results/{study}/climbs/{case}/{batch}.nc",
     log:
         "logs/{study}/climb_samples/{case}/{batch}.log",
+    benchmark:
+        "logs/{study}/climb_samples/{case}/{batch}.tsv",
     conda:
         "../envs/blockshake.yaml"
     resources:
@@ -21,6 +22,9 @@ rule climb_samples:
     params:
         runs=lambda wildcards: runs_of(
             FRAGILITY["model"], case_keys(wildcards.case, "intensity")
+        ),
+        batch=lambda wildcards: values_of(
+            wildcards.case, FRAGILITY["model"], wildcards.batch
         ),
         seed=lookup(dpath="ensemble/seed", within=config),
         ladder=lookup(dpath="ladder", within=config),

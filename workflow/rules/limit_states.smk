@@ -12,6 +12,8 @@ rule measure_limit_states:
         "results/{study}/limits/{model}/{case}.nc",
     log:
         "logs/{study}/measure_limit_states/{model}/{case}.log",
+    benchmark:
+        "logs/{study}/measure_limit_states/{model}/{case}.tsv",
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -41,6 +43,8 @@ rule measure_indices:
         "results/{study}/indices/{model}/{case}.nc",
     log:
         "logs/{study}/measure_indices/{model}/{case}.log",
+    benchmark:
+        "logs/{study}/measure_indices/{model}/{case}.tsv",
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -55,6 +59,7 @@ rule measure_indices:
 rule write_responses:
     """All answers in one table: a row a run, with its sampled values, its motion, its responses and how it ended."""
     input:
+        design="results/{study}/design.csv",
         samples=expand(
             "results/{{study}}/samples/{model}/{case}.nc", model=MODELS, case=CASES
         ),

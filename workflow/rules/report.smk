@@ -50,6 +50,8 @@ rule make_report:
         ),
     log:
         "logs/{study}/make_report.log",
+    benchmark:
+        "logs/{study}/make_report.tsv",
     conda:
         "../envs/blockshake.yaml"
     params:

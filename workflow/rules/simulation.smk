@@ -23,6 +23,8 @@ rule simulate_batch:
         "results/{study}/runs/{model}/{case}/{batch}.nc",
     log:
         "logs/{study}/simulate_batch/{model}/{case}/{batch}.log",
+    benchmark:
+        "logs/{study}/simulate_batch/{model}/{case}/{batch}.tsv",
     priority: for_first_picture
     conda:
         "../envs/blockshake.yaml"
@@ -30,6 +32,9 @@ rule simulate_batch:
         runtime=240,
     params:
         runs=sample_runs,
+        batch=lambda wildcards: values_of(
+            wildcards.case, wildcards.model, wildcards.batch
+        ),
         seed=lookup(dpath="ensemble/seed", within=config),
         store="results/store",
         yaml_contents=yaml_contents(run_files),

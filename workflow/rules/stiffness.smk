@@ -1,7 +1,6 @@
 rule calibrate_stiffness:
     """Contact stiffness of every sample of a case from the wave speed in a tower of four of its blocks."""
     input:
-        design="results/{study}/design.csv",
         structure=structure_file,
         kernels=kernels("ls-dem"),
     output:
@@ -9,11 +8,16 @@ rule calibrate_stiffness:
         waves="results/{study}/waves/{case}.nc",
     log:
         "logs/{study}/calibrate_stiffness/{case}.log",
+    benchmark:
+        "logs/{study}/calibrate_stiffness/{case}.tsv",
     priority: for_first_picture
     conda:
         "../envs/blockshake.yaml"
     params:
         structure=lambda wildcards: CASES[wildcards.case]["structure"],
+        samples=lambda wildcards: values_of(
+            wildcards.case, "ls-dem", but=("friction", "motion")
+        ),
         linked=lookup(dpath="ensemble/linked", within=config),
         store="results/store",
         yaml_contents=yaml_contents(structure_file),

@@ -7,6 +7,6 @@ from blockshake.study.fragility.climb import climb_samples
 
 with logging_to(snakemake.log[0]) as say:
     params, input = snakemake.params, snakemake.input
-    rows, store = batch_rows(snakemake.wildcards.batch, input), Store(params.store, params.source, say)
+    rows, store = batch_rows(params.batch, input.stiffness), Store(params.store, params.source, say)
     climbed = climb_samples(CaseRuns(**params.runs), rows, Ladder(**params.ladder), store, params.seed)
     write_dataset(snakemake.output[0], climbed)

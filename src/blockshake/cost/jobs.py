@@ -3,7 +3,11 @@
 import os
 import re
 import subprocess
+from pathlib import Path
 from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
 
 from blockshake.errors import InputError
 
@@ -23,6 +27,17 @@ _FIXED = {
     "measure_sensitivity": 5.3,
 }
 _PLANNED = 6.1  # CPU s
+# rules whose benchmarks do not tell what they cost anew: they simulate, or take what they need from the store
+_KEEPING = {
+    "calibrate_stiffness",
+    "climb_samples",
+    "compare_open_tests",
+    "extend_model",
+    "simulate_batch",
+    "simulate_clean",
+    "simulate_nominal",
+    "simulate_outcomes",
+}
 _ROW = re.compile(r"^(\w+) +(\d+)$", re.MULTILINE)
 
 
@@ -49,7 +64,8 @@ def planned_jobs(command):
 
     Notes
     -----
-    The fixed costs of a job count times the CPU time of the plan over that on the machine where they were measured.
+    A job costs what the benchmarks of its rule in ``logs`` of the current folder state, in the mean. Without any, fixed
+    costs count, times the CPU time of the plan over that on the machine where they were measured.
     """
     before = os.times()
     done = subprocess.run(
@@ -61,5 +77,19 @@ def planned_jobs(command):
     counts = {rule: int(count) for rule, count in _ROW.findall(done.stdout + done.stderr)}
     counts.pop("total", None)
     spent = after.children_user + after.children_system - before.children_user - before.children_system
-    seconds = sum(count * _FIXED.get(rule, _USUAL) for rule, count in counts.items())
-    return CostPart("jobs in addition to their runs", sum(counts.values()), spent / _PLANNED * seconds)
+    measured = measured_jobs("logs", counts)
+    seconds = sum(
+        count * measured.get(rule, spent / _PLANNED * _FIXED.get(rule, _USUAL))
+        for rule, count in counts.items()
+    )
+    return CostPart("jobs in addition to their runs", sum(counts.values()), seconds)
+
+
+def measured_jobs(folder, rules):
+    """CPU seconds of a job by rule, mean of the benchmarks in a folder of logs; of ``rules`` that keep nothing."""
+    found = {}
+    for path in Path(folder).rglob("*.tsv"):
+        rule = next((part for part in path.with_suffix("").parts if part in rules), None)
+        if rule is not None and rule not in _KEEPING:
+            found.setdefault(rule, []).extend(pd.read_csv(path, sep="\t")["cpu_time"])
+    return {rule: float(np.nanmean(seconds)) for rule, seconds in found.items() if np.isfinite(seconds).any()}

@@ -199,9 +199,12 @@ def test_the_chance_to_overturn_is_that_of_direct_integration(tmp_path):
     made = sample_figures(xr.concat(batches, dim="sample"))
     write_dataset(tmp_path / "results" / "samples" / "nscd-rigid" / "block.nc", made)
     write_dataset(tmp_path / "results" / "limits" / "nscd-rigid" / "block.nc", found)
+    design = "friction.ice.ice\n" + "".join(f"{0.01 * number}\n" for number in range(17))
+    (tmp_path / "results" / "design.csv").write_text(design)
     study = {"cases": [case], "models": ["nscd-rigid"], "limits": limits, "ensemble": {"seed": 1}}
     table = response_table(study, tmp_path / "results")
     assert table["motion.scale"].tolist() == scales.tolist()
+    assert table["friction.ice.ice"].tolist() == [0.01 * number for number in range(17)]  # of no run's use
     assert table["record"].tolist() == ["pulse"] * 17
     assert table["limit.tips.exceeded"].tolist() == exceeded.tolist()
     assert set(table["status"]) == {"completed", "collapsed"}

@@ -1,12 +1,17 @@
 """Sensitivity of an ensemble: which variable is found, what becomes of collapsed samples, what is written."""
 
 import numpy as np
+import pandas as pd
 import pytest
 from fake_study import ensemble_of
 
 from blockshake.geometry.structure import load_structure
 from blockshake.study.sampling.latin_hypercube import draw_samples
-from blockshake.study.sampling.sample_parameters import sample_parameters, unused_variables
+from blockshake.study.sampling.sample_parameters import (
+    sample_parameters,
+    unused_variables,
+    used_columns,
+)
 from blockshake.study.sensitivity.sensitivity import sensitivity
 
 FRICTION, DENSITY = "friction.concrete.concrete", "materials.concrete.density"
@@ -40,7 +45,7 @@ def at(result, name, quantity, parameter, **bound):
 
 
 def test_the_input_that_acts_is_found_and_no_other(ensemble, design):
-    result = sensitivity(ensemble(), list(design.columns))
+    result = sensitivity(ensemble(), design)
     for quantity, acting in (("history", FRICTION), ("peak", FRICTION)):
         for name in ("first_order", "rank_correlation"):
             if quantity == "history" and name == "rank_correlation":
@@ -60,7 +65,7 @@ def test_the_input_that_acts_is_found_and_no_other(ensemble, design):
 
 def test_spread_is_the_standard_deviation_and_of_a_history_its_mean_square_over_time(ensemble, design):
     gathered = ensemble()
-    result = sensitivity(gathered, [FRICTION]).sel(marker="block-1-face")
+    result = sensitivity(gathered, design[[FRICTION]]).sel(marker="block-1-face")
     peaks = gathered["peak"].sel(frame="slab", marker="block-1-face")
     assert float(result["spread"].sel(quantity="peak")) == pytest.approx(float(peaks.std()), rel=1e-9)
     along = gathered["marker_displacement"].sel(axis="x", marker="block-1-face")
@@ -79,7 +84,7 @@ def test_collapsed_samples_rank_first_and_have_no_history(ensemble, design):
             run["marker_displacement"][:, 1] *= 0.0
         return run
 
-    result = sensitivity(ensemble(fall), list(design.columns))
+    result = sensitivity(ensemble(fall), design)
     assert list(result["used"].values) == [40, 50]
     # all others grow with friction, the ten of least friction are put above them
     ranks = np.concatenate([np.full(10, 45.5), np.arange(1.0, 41.0)])
@@ -98,18 +103,18 @@ def test_samples_that_the_solver_could_not_finish_are_left_out(ensemble, design)
             run["marker_displacement"][:, 1] *= 1000.0
         return run
 
-    result = sensitivity(ensemble(fail), list(design.columns))
+    result = sensitivity(ensemble(fail), design)
     assert (result["used"] == 45).all()
     assert at(result, "first_order", "peak", FRICTION) > 0.8
 
 
 def test_same_ensemble_same_numbers(ensemble, design):
-    first, second = (sensitivity(ensemble(), list(design.columns)) for _ in range(2))
+    first, second = (sensitivity(ensemble(), design) for _ in range(2))
     assert first.identical(second)
 
 
 def test_every_variable_has_a_name_and_a_unit(ensemble, design):
-    result = sensitivity(ensemble(), [FRICTION, DENSITY])
+    result = sensitivity(ensemble(), design[[FRICTION, DENSITY]])
     for name, variable in result.data_vars.items():
         assert variable.attrs["long_name"], name
         assert variable.attrs["units"] == ("m" if name.endswith("spread") else "1"), name
@@ -118,7 +123,7 @@ def test_every_variable_has_a_name_and_a_unit(ensemble, design):
 
 def test_stiffness_is_no_variable_unless_asked_for(ensemble, design):
     values = design.assign(**{"ls_dem.normal_stiffness": design[YOUNG] / 1.6})
-    result = sensitivity(ensemble(values=values), list(design.columns))
+    result = sensitivity(ensemble(values=values), design)
     assert "ls_dem.normal_stiffness" not in result["parameter"].values
 
 
@@ -138,11 +143,21 @@ def test_controls_are_what_model_and_structure_have_no_use_for(design):
     assert set(unused_variables(names, "nscd-rigid", with_steel)) == viscous | elastic
 
 
+def test_a_variable_counts_where_a_parameter_takes_its_value():
+    """The modulus of a material that the structure lacks is that of its foundation by a link."""
+    lacked, foundation = "materials.steel.youngs_modulus", "materials.foundation.youngs_modulus"
+    one = pd.DataFrame({lacked: [2e11], FRICTION: [0.7], "friction.ice.ice": [0.1]})
+    structure = load_structure("configuration-1")
+    assert used_columns(one, structure, {}, "ls-dem") == [FRICTION]
+    assert used_columns(one, structure, {foundation: lacked}, "ls-dem") == [lacked, FRICTION]
+    assert used_columns(one, structure, {foundation: lacked}, "nscd-rigid") == [FRICTION]
+
+
 def test_few_samples_leave_variables_correlated_and_too_few_have_no_correlation(ensemble, design):
     """Rows of a design in which no two variables are correlated are correlated among themselves."""
     gathered = ensemble()
     every, eight, five = (
-        sensitivity(gathered.isel(sample=slice(size)), list(design.columns))["correlation"].to_numpy()
+        sensitivity(gathered.isel(sample=slice(size)), design)["correlation"].to_numpy()
         for size in (50, 8, 5)
     )
     pairs = np.triu_indices(design.shape[1], 1)

@@ -15,7 +15,7 @@ from blockshake.simulation.simulate import simulate
 from blockshake.store import Unit, load_made
 from blockshake.study.ensembles.case_input import structure_of_case
 from blockshake.study.ensembles.ensemble import DECIMALS, as_sample, run_alone
-from blockshake.study.sampling.sample_parameters import used_parameters
+from blockshake.study.sampling.sample_parameters import used_columns, used_parameters
 from blockshake.study.sampling.sample_table import load_design
 
 SAMPLES, REPLICATE, CALIBRATION, FRAGILITY = "samples", "replicate", "calibration", "fragility"
@@ -115,16 +115,24 @@ def samples_of(files, rows):
     return [as_sample(load_made(file), int(sample), row) for file, (sample, row) in pairs]
 
 
-def batch_rows(batch, files):
-    """Sampled values of a batch, columns the dotted names, contact stiffness with them where the model has any.
+def batch_values(batch, design, structure, linked, model):
+    """Sampled values of a batch that a model of a structure has a use for, JSON-like: what its runs follow from.
 
-    ``batch``: first and last sample, such as ``010-019``, or `HALF_STEP`; ``files``: attributes ``design`` and
-    ``stiffness``, CSV tables by sample, the latter empty without contact stiffness.
+    ``batch``: first and last sample, such as ``010-019``, or `HALF_STEP`; ``design``: values of all samples.
     """
     first, last = (0, 0) if batch == HALF_STEP else map(int, batch.split("-"))
-    tables = [load_design(path) for path in (files.design, files.stiffness) if path]
-    rows = pd.concat(tables, axis=1)
-    rows = rows.loc[:, ~rows.columns.duplicated()]  # a stiffness that is drawn is not calibrated
-    if last not in rows.index:
-        raise InputError(str(files.design), f"sample {last}", f"expected samples 0 to {rows.index[-1]}")
-    return rows.loc[first:last]
+    if last not in design.index:
+        raise InputError("the design", f"sample {last}", f"expected samples 0 to {design.index[-1]}")
+    used = design.loc[first:last, used_columns(design, structure, linked, model)]
+    return {"first": first, "values": {name: used[name].tolist() for name in used}, "size": len(used)}
+
+
+def batch_rows(batch, stiffness):
+    """The same as a table by sample, columns the dotted names, with its rows of the CSV table ``stiffness``, if any."""
+    index = pd.RangeIndex(batch["first"], batch["first"] + batch["size"], name="sample")
+    rows = pd.DataFrame(batch["values"], index=index)
+    if stiffness:
+        rows = rows.join(
+            load_design(stiffness)[lambda table: table.columns.difference(rows.columns, sort=False)]
+        )
+    return rows  # a stiffness that is drawn is not calibrated

@@ -6,6 +6,7 @@ import pandas as pd
 
 from blockshake.dynamics.record_set import DrawnMotions
 from blockshake.store import load_made
+from blockshake.study.sampling.sample_table import load_design
 
 _ENDINGS = ("status", "reason", "end_time")
 # responses by their name in the samples' files: along what they are reported, and the unit
@@ -44,11 +45,12 @@ def response_table(study, results):
         A file of the results is missing or holds something else.
     """
     results, parts = Path(results), []
+    design = load_design(results / "design.csv")
     for case in study["cases"]:
         for model in study["models"]:
             samples = load_made(results / "samples" / model / f"{case['name']}.nc")
             limits = results / "limits" / model / f"{case['name']}.nc"
-            parts.append(_rows(case, model, samples, study["ensemble"]["seed"]))
+            parts.append(_rows(case, model, samples, design, study["ensemble"]["seed"]))
             if study.get("limits") and limits.exists():
                 parts[-1] = parts[-1].join(_limits(load_made(limits)))
     table = pd.concat(parts, ignore_index=True)
@@ -56,7 +58,7 @@ def response_table(study, results):
     return table[[name for name in table.columns if name not in last] + last]
 
 
-def _rows(case, model, samples, seed):
+def _rows(case, model, samples, design, seed):
     index = pd.Index(samples["sample"].values, name="sample")
     columns = {
         "model": model,
@@ -71,6 +73,7 @@ def _rows(case, model, samples, seed):
         columns |= {"record": [one.name for one in records], "level": [one.level for one in records]}
     for name in _ENDINGS:
         columns[f"{name} [s]" if name == "end_time" else name] = samples[name].values
+    columns |= dict(design.loc[index].items())
     columns |= {str(name): column for name, column in samples["parameter_value"].to_pandas().items()}
     for name, (along, unit) in _RESPONSES.items():
         values = (

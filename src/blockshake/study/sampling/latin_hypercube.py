@@ -1,7 +1,9 @@
 """Latin hypercube designs with controlled correlation, and designs of own samples."""
 
+import contextlib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,7 +11,7 @@ import pandas as pd
 import scipy
 
 from blockshake.errors import InputError
-from blockshake.files import AnyPath
+from blockshake.files import AnyPath, content_digest, load_json
 from blockshake.study.sampling.correlation_control import arrange
 from blockshake.study.sampling.correlation_target import check_correlation, load_correlation
 from blockshake.study.sampling.distributions import TABLE_2, known_as, load_distributions
@@ -76,6 +78,25 @@ class SampleDesign:
             "correlation": self.correlation.to_numpy().tolist(),
             "target_correlation": self.target.to_numpy().tolist(),
         }
+
+
+def drawn_design(settings, source, folder):
+    """Values of a design: those that `draw_samples` has left in a folder of results, or drawn anew, which is the same.
+
+    Parameters
+    ----------
+    settings : dict
+        ``ensemble`` of the configuration.
+    source : str
+        Digest of what draws them.
+    folder : str or path
+        Folder of the study's results, where ``design.json`` states what ``design.csv`` was drawn from.
+    """
+    folder = Path(folder)
+    with contextlib.suppress(InputError):
+        if load_json(folder / "design.json").get("drawn_from") == content_digest(settings, source):
+            return load_design(folder / "design.csv")
+    return draw_design(settings).values
 
 
 def draw_samples(

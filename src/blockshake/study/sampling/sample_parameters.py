@@ -25,6 +25,14 @@ def used_parameters(row, structure, linked, model):
     return {name: value for name, value in given.items() if name not in unused}
 
 
+def used_columns(design, structure, linked, model):
+    """Columns of a design that can matter to a model of a structure, themselves or by what takes their values."""
+    given = sample_parameters(design.iloc[0], structure, linked)
+    unused = set(unused_variables([*design.columns, *linked], model, given))
+    by_link = {source for target, source in linked.items() if target not in unused}
+    return [name for name in design.columns if name not in unused or name in by_link]
+
+
 def structure_parameters(row, structure, linked):
     """`sample_parameters` without those of a solver: what `Structure.with_parameters` takes."""
     return part_parameters(sample_parameters(row, structure, linked))[0]

@@ -19,7 +19,7 @@ from blockshake.study.ensembles.ensemble import (
 )
 from blockshake.study.ensembles.envelope import counted_samples
 from blockshake.study.ensembles.levels import by_level
-from blockshake.study.sampling.sample_parameters import sample_parameters, unused_variables
+from blockshake.study.sampling.sample_parameters import used_columns
 from blockshake.study.sampling.sample_table import load_design
 from blockshake.study.sensitivity.measures import (
     FEWEST_SAMPLES,
@@ -57,24 +57,22 @@ def sensitivity_of_case(batches, design, model, structure, linked, levels):
     ``levels`` from `levels_of`: the result is along ``level`` where there are any.
     """
     values = load_design(design)
-    given = sample_parameters(values.iloc[0], load_structure(structure), linked)
-    variables = list(values.columns)
+    used = used_columns(values, load_structure(structure), linked, model)
     ensemble = join_batches(batches, POSES, ALONG_X)
-    unused = unused_variables(variables, model, given)
-    return by_level(levels, lambda of: sensitivity(of(ensemble), variables, unused))
+    return by_level(levels, lambda of: sensitivity(of(ensemble), values, values.columns.difference(used)))
 
 
-def sensitivity(ensemble, variables, controls=()):
+def sensitivity(ensemble, design, controls=()):
     """Sensitivity of the histories and peaks of an ensemble to its random variables.
 
     Parameters
     ----------
     ensemble : xarray.Dataset
         From `join_batches`.
-    variables : list of str
-        Dotted names of the sampled variables; stiffness that follows from them is not one.
+    design : pandas.DataFrame
+        Values of the sampled variables, by sample and dotted name; stiffness that follows from them is not one.
     controls : sequence of str
-        Those among them that cannot matter, from `unused_variables`.
+        Those among them that cannot matter, see `used_columns`.
 
     Returns
     -------
@@ -97,7 +95,7 @@ def sensitivity(ensemble, variables, controls=()):
     a history weighs each time by the variance there: it states what the envelope's thickness over time comes from.
     """
     counted = counted_samples(ensemble)
-    inputs = counted["parameter_value"].sel(parameter=variables).transpose("sample", "parameter").to_numpy()
+    variables, inputs = list(design.columns), design.loc[counted["sample"].values].to_numpy()
     seed = int(
         content_digest("sensitivity", *(str(ensemble.attrs.get(key)) for key in ("model", "structure"))), 16
     )
