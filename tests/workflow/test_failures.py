@@ -1,6 +1,7 @@
 """A workflow that cannot succeed any more ends at once; its last lines are the reason, the job and the log."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -55,17 +56,17 @@ def last_lines(answer, count):
 
 def test_bad_input_of_the_first_job_ends_a_study_at_once(tmp_path):
     checkout = Checkout(tmp_path)
-    drawing_fails(checkout, IMPORT + REFUSED.format("design"))
+    broken(checkout, "simulation/simulate", "compile_kernels", IMPORT + REFUSED.format("kernels"))
     answer = checkout.snakemake(RUNS)
     assert answer.returncode == 2
-    assert last_lines(answer, 4) == [
-        NOT_FINISHED,
-        "blockshake: design.csv: key: expected another design",
-        "  job: draw_samples, which makes results/small/design.csv, results/small/design.json",
-        "  log: logs/small/draw_samples.log",
-    ]
+    ended, reason, job, log = last_lines(answer, 4)
+    assert (ended, reason) == (NOT_FINISHED, "blockshake: kernels.csv: key: expected another kernels")
+    made = re.fullmatch(
+        r"  job: compile_kernels, which makes results/kernels/(nscd-rigid-[0-9a-f]{12})\.json", job
+    )
+    assert log == f"  log: logs/compile_kernels/{made[1]}.log"
     assert not (tmp_path / "results" / "store").exists()
-    assert "Ended with exit code 2" in (tmp_path / "logs" / "small" / "draw_samples.log").read_text()
+    assert "Ended with exit code 2" in (tmp_path / "logs" / "compile_kernels" / f"{made[1]}.log").read_text()
 
 
 @pytest.mark.faults
