@@ -1,13 +1,15 @@
-"""The sensors' noise as it is: how large, along which axis, and how much of it slow, from the rest before each test."""
+"""The sensors' noise as it is: how large, along which axis, and how much of it slow, from rest and redundant markers."""
 
 from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import solve_triangular, toeplitz
+from scipy.optimize import nnls
 
+from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.schema import AXES
-from blockshake.measurement.motion.body_frame import rigid_jacobian
+from blockshake.measurement.motion.body_frame import ON_LINE, rigid_jacobian
 from blockshake.measurement.sensors.instruments import SlowNoise
 from blockshake.measurement.sensors.quiet_start import counted_from_rest
 
@@ -16,6 +18,8 @@ _MEMORIES = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2)  # s
 _GAINS = 3.0  # nats, by which a slow part has to explain the rest better than white noise does
 _FEWEST_AT_REST = 20  # readings of a rest
 _MOST_GAPS = 0.2  # of a sensor's readings in it
+_FEWEST_REDUNDANT = 3  # markers of a body
+_ROUNDED = 0.01  # of the usual variance: less is of readings that are rounded
 _LEAST = 0.5  # of the stated noise: rounded readings may not move at all in a rest
 _STATED = 100.0  # readings that what is stated counts for
 _FAR_SHARE = 0.1  # of the variance: a slow part that is farther from the stated one is remarked
@@ -48,7 +52,8 @@ def found_noise(tests, structure, sensors):
     -----
     The stack at rest may still move with the table, as one body: at each instant rigid motions are taken out by least
     squares. The rest is a Gaussian process of white noise and of a share of slow noise, ``exp(-|t| / memory)``;
-    share and memory are those of the largest likelihood on a grid, the means of the readings free.
+    share and memory are those of the largest likelihood on a grid, the means of the readings free. How the noise is
+    shared by the axes is found from the redundant markers of each body over the whole tests.
     """
     sensors = sensors.not_noiseless()
     at_rest = [counted_from_rest(test, structure, sensors) for test in tests.values()]
@@ -58,7 +63,7 @@ def found_noise(tests, structure, sensors):
     if markers:
         sizes, found["marker_slow"] = _noise(markers, sensors.noise_by_axis)
         found["marker_noise"] = usual = float(np.sqrt((sizes**2).mean()))
-        found["marker_axes"] = tuple((sizes / usual).tolist())
+        found["marker_axes"] = tuple(_shares_by_axis(tests.values(), structure, sizes / usual).tolist())
     if channels:
         (size,), found["accelerometer_slow"] = _noise(channels, np.array([sensors.accelerometer_noise]))
         found["accelerometer_noise"] = float(size)
@@ -98,6 +103,39 @@ def noise_remarks(found, stated):
 
 def _slow_share(slow):
     return slow.share if slow.memory > _FILTERED else 0.0
+
+
+def _shares_by_axis(tests, structure, at_rest):
+    """Noise of markers along each axis over the usual one, float64 (3,), as redundant markers leave it in whole tests.
+
+    Second differences of the readings leave out slow motion, the rigid motion of each body is taken out of them, and
+    the variance of a coordinate, from the median against gaps and blows, is a mean of the variances along the axes with
+    the squares of the projector as weights. ``at_rest`` is kept where no body has redundant markers, or where rounded
+    readings along an axis do not change: blocks that settle in the rest make it uneven.
+    """
+    weights, variances = [], []
+    for test, name in product(tests, structure.body_names):
+        read = set(map(str, test["marker"].values))
+        markers = [marker for marker in structure.file.markers if marker.body == name and marker.name in read]
+        if len(markers) < _FEWEST_REDUNDANT:
+            continue
+        moved = test["marker_displacement"].sel(marker=[marker.name for marker in markers])
+        moved = moved.transpose("time", "marker", "axis").to_numpy().reshape(moved.sizes["time"], -1)
+        change = np.diff(moved, 2, axis=0)
+        change = change[np.isfinite(change).all(axis=1)]
+        if len(change) < _FEWEST_AT_REST:
+            continue
+        orientation = structure.orientation[structure.body_names.index(name)]
+        arms = structure.arms(markers) @ rotation_matrices(orientation).T
+        jacobian = rigid_jacobian(arms - arms.mean(axis=0))
+        projector = np.eye(len(jacobian)) - jacobian @ np.linalg.pinv(jacobian, rcond=ON_LINE)
+        weights.append((projector**2).reshape(len(jacobian), -1, 3).sum(axis=1))
+        variances.append(np.median(np.abs(change @ projector), axis=0) ** 2)
+    if not weights:
+        return at_rest
+    variance = nnls(np.concatenate(weights), np.concatenate(variances))[0]
+    usual = variance.mean()
+    return np.sqrt(variance / usual) if variance.min() > _ROUNDED * usual else at_rest
 
 
 def _of_markers(test, until, structure):
