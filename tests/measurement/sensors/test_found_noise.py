@@ -50,7 +50,7 @@ def test_noise_along_one_axis_is_found_along_it(runs, structure):
 
 
 def test_blocks_that_settle_in_the_rest_make_no_axis_noisier(runs, structure):
-    """Each block sinks on its own, by 0.3 mm in the first tenths of a second; the rest alone gave z 1.2 times the noise."""
+    """Each block sinks on its own, by 0.3 mm in tenths of a second: the rest alone made z 1.2 times as noisy."""
 
     def settle(test):
         sinking = 3e-4 * np.exp(-test["time"].to_numpy() / 0.1)

@@ -1,4 +1,4 @@
-"""The sensors' noise as it is: how large, along which axis, and how much of it slow, from rest and redundant markers."""
+"""The noise of sensors as it is: its size, by axis, and its slow part, from the rest and from redundant markers."""
 
 from itertools import product
 from typing import NamedTuple
