@@ -5,7 +5,7 @@ import textwrap
 from outside_forces import OUTSIDE
 from scored_record import Answers
 
-from blockshake.diagnosis.verdict.track_record_section import PARTS, track_record_lines
+from blockshake.diagnosis.verdict.track_record_section import part_in_words, track_record_lines
 from blockshake.effects.registry import EFFECTS
 
 _WORDS = {True: "met", False: "missed", None: ""}
@@ -51,7 +51,7 @@ def as_markdown(record):
 
 def in_words(record):
     """The record in sentences of a page, in lines of 100 columns."""
-    part = PARTS.get(record.part, record.part)
+    part = part_in_words(record)
     sentences = [
         f"The diagnosis was tried on {len(record.cases)} synthetic campaigns with a sealed truth"
         f"{f', {part} of those planned' if part else ''}.",

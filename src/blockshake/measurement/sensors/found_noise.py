@@ -4,8 +4,8 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from scipy.linalg import solve_triangular, toeplitz
-from scipy.optimize import nnls
 
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.schema import AXES
@@ -133,7 +133,7 @@ def _shares_by_axis(tests, structure, at_rest):
         variances.append(np.median(np.abs(change @ projector), axis=0) ** 2)
     if not weights:
         return at_rest
-    variance = nnls(np.concatenate(weights), np.concatenate(variances))[0]
+    variance = scipy.optimize.nnls(np.concatenate(weights), np.concatenate(variances))[0]
     usual = variance.mean()
     return np.sqrt(variance / usual) if variance.min() > _ROUNDED * usual else at_rest
 
