@@ -12,7 +12,7 @@ rule compare_open_tests:
     log:
         "logs/{study}/compare_open_tests/{model}/{case}.log",
     benchmark:
-        "logs/{study}/compare_open_tests/{model}/{case}.tsv",
+        "logs/{study}/compare_open_tests/{model}/{case}.tsv"
     conda:
         "../envs/blockshake.yaml"
     resources:
@@ -47,7 +47,7 @@ rule calibrate_jointly:
     log:
         "logs/{study}/calibrate_jointly.log",
     benchmark:
-        "logs/{study}/calibrate_jointly.tsv",
+        "logs/{study}/calibrate_jointly.tsv"
     conda:
         "../envs/blockshake.yaml"
     params:

@@ -41,7 +41,7 @@ checkpoint decide:
     log:
         "logs/diagnosis/{campaign}/decide.log",
     benchmark:
-        "logs/diagnosis/{campaign}/decide.tsv",
+        "logs/diagnosis/{campaign}/decide.tsv"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -62,7 +62,7 @@ rule simulate_clean:
     log:
         "logs/diagnosis/{campaign}/simulate_clean/{solver}.log",
     benchmark:
-        "logs/diagnosis/{campaign}/simulate_clean/{solver}.tsv",
+        "logs/diagnosis/{campaign}/simulate_clean/{solver}.tsv"
     conda:
         "../envs/blockshake.yaml"
     resources:
@@ -87,7 +87,7 @@ rule simulate_nominal:
     log:
         "logs/diagnosis/{campaign}/simulate_nominal/{number}-{solver}.log",
     benchmark:
-        "logs/diagnosis/{campaign}/simulate_nominal/{number}-{solver}.tsv",
+        "logs/diagnosis/{campaign}/simulate_nominal/{number}-{solver}.tsv"
     conda:
         "../envs/blockshake.yaml"
     resources:
@@ -113,7 +113,7 @@ rule simulate_outcomes:
     log:
         "logs/diagnosis/{campaign}/simulate_outcomes/{number}-{solver}.log",
     benchmark:
-        "logs/diagnosis/{campaign}/simulate_outcomes/{number}-{solver}.tsv",
+        "logs/diagnosis/{campaign}/simulate_outcomes/{number}-{solver}.tsv"
     conda:
         "../envs/blockshake.yaml"
     resources:
@@ -139,7 +139,7 @@ rule describe_misfit:
     log:
         "logs/diagnosis/{campaign}/describe_misfit.log",
     benchmark:
-        "logs/diagnosis/{campaign}/describe_misfit.tsv",
+        "logs/diagnosis/{campaign}/describe_misfit.tsv"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -171,7 +171,7 @@ rule extend_model:
     log:
         "logs/diagnosis/{campaign}/extend_model/{solver}.log",
     benchmark:
-        "logs/diagnosis/{campaign}/extend_model/{solver}.tsv",
+        "logs/diagnosis/{campaign}/extend_model/{solver}.tsv"
     conda:
         "../envs/blockshake.yaml"
     resources:
@@ -204,7 +204,7 @@ rule measure_gain:
     log:
         "logs/diagnosis/{campaign}/measure_gain.log",
     benchmark:
-        "logs/diagnosis/{campaign}/measure_gain.tsv",
+        "logs/diagnosis/{campaign}/measure_gain.tsv"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -269,7 +269,7 @@ rule make_diagnosis_report:
     log:
         "logs/diagnosis/{campaign}/make_diagnosis_report.log",
     benchmark:
-        "logs/diagnosis/{campaign}/make_diagnosis_report.tsv",
+        "logs/diagnosis/{campaign}/make_diagnosis_report.tsv"
     conda:
         "../envs/blockshake.yaml"
     params:

@@ -10,7 +10,7 @@ rule make_envelope:
     log:
         "logs/{study}/make_envelope/{model}/{case}.log",
     benchmark:
-        "logs/{study}/make_envelope/{model}/{case}.tsv",
+        "logs/{study}/make_envelope/{model}/{case}.tsv"
     priority: for_first_picture
     conda:
         "../envs/blockshake.yaml"
@@ -55,7 +55,7 @@ rule measure_sensitivity:
     log:
         "logs/{study}/measure_sensitivity/{model}/{case}.log",
     benchmark:
-        "logs/{study}/measure_sensitivity/{model}/{case}.tsv",
+        "logs/{study}/measure_sensitivity/{model}/{case}.tsv"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -84,7 +84,7 @@ rule compare_models:
     log:
         "logs/{study}/compare_models/{case}.log",
     benchmark:
-        "logs/{study}/compare_models/{case}.tsv",
+        "logs/{study}/compare_models/{case}.tsv"
     conda:
         "../envs/blockshake.yaml"
     params:

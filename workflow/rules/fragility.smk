@@ -14,7 +14,7 @@ rule climb_samples:
     log:
         "logs/{study}/climb_samples/{case}/{batch}.log",
     benchmark:
-        "logs/{study}/climb_samples/{case}/{batch}.tsv",
+        "logs/{study}/climb_samples/{case}/{batch}.tsv"
     conda:
         "../envs/blockshake.yaml"
     resources:

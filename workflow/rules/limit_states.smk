@@ -13,7 +13,7 @@ rule measure_limit_states:
     log:
         "logs/{study}/measure_limit_states/{model}/{case}.log",
     benchmark:
-        "logs/{study}/measure_limit_states/{model}/{case}.tsv",
+        "logs/{study}/measure_limit_states/{model}/{case}.tsv"
     conda:
         "../envs/blockshake.yaml"
     params:
@@ -44,7 +44,7 @@ rule measure_indices:
     log:
         "logs/{study}/measure_indices/{model}/{case}.log",
     benchmark:
-        "logs/{study}/measure_indices/{model}/{case}.tsv",
+        "logs/{study}/measure_indices/{model}/{case}.tsv"
     conda:
         "../envs/blockshake.yaml"
     params:

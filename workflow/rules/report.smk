@@ -51,7 +51,7 @@ rule make_report:
     log:
         "logs/{study}/make_report.log",
     benchmark:
-        "logs/{study}/make_report.tsv",
+        "logs/{study}/make_report.tsv"
     conda:
         "../envs/blockshake.yaml"
     params:

@@ -24,7 +24,7 @@ rule simulate_batch:
     log:
         "logs/{study}/simulate_batch/{model}/{case}/{batch}.log",
     benchmark:
-        "logs/{study}/simulate_batch/{model}/{case}/{batch}.tsv",
+        "logs/{study}/simulate_batch/{model}/{case}/{batch}.tsv"
     priority: for_first_picture
     conda:
         "../envs/blockshake.yaml"

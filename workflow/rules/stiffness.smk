@@ -9,7 +9,7 @@ rule calibrate_stiffness:
     log:
         "logs/{study}/calibrate_stiffness/{case}.log",
     benchmark:
-        "logs/{study}/calibrate_stiffness/{case}.tsv",
+        "logs/{study}/calibrate_stiffness/{case}.tsv"
     priority: for_first_picture
     conda:
         "../envs/blockshake.yaml"
