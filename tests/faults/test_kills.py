@@ -45,14 +45,14 @@ def test_a_work_killed_again_and_again(work, whole, tmp_path):
         ] += 1
         kills += not ended
         lost["orphans"] += count_orphans(killed.folder)
-        finished = _judge(killed.folder, finished, lost)
+        finished = judge(killed.folder, finished, lost)
         if ended:
             lost["files unlike those of a whole run"] += len(unlike(checkout.folder, killed.folder))
             _clear(killed.folder)
             finished = {}
     answer = killed.snakemake(*WORKS[work])
     lost["commands that did not end"] += answer.returncode != 0
-    finished = _judge(killed.folder, finished, lost)
+    finished = judge(killed.folder, finished, lost)
     lost["files unlike those of a whole run"] += len(unlike(checkout.folder, killed.folder))
     LOST.update({f"{work}: {name}": count for name, count in lost.items()})
     assert finished
@@ -96,7 +96,7 @@ def _kill_a_job(command):
         time.sleep(0.05)
 
 
-def _judge(folder, finished, lost):
+def judge(folder, finished, lost):
     """Count units that were made again and files that are not whole; give the finished units with their times."""
     units = {path: path.stat().st_mtime_ns for path in files(folder / "results" / "store", ".nc", ".json")}
     lost["finished units lost"] += len(finished.keys() - units.keys())

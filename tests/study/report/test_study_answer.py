@@ -440,6 +440,40 @@ def test_more_samples_of_a_case_whose_samples_do_not_differ_are_not_advised(cont
     assert not any("72 samples" in step for step in parts(content)[2]["next"])
 
 
+def with_all_peaks(content, peak):
+    """The content with a peak of every sample of each case, and none collapsed [m]."""
+    for name, case in list(content.cases.items()):
+        for model, one in case.responses.items():
+            size = one.samples.sizes["sample"]
+            content = with_statuses(content, name, model, ["completed"] * size)
+            content = with_peaks(content, name, model, np.full(size, peak))
+    return content
+
+
+def test_runs_that_no_variable_changes_are_said_to_bear_no_more_than_one(content):
+    words = "no variable of this study changes the motion"
+    assert not any(words in one for one in unknown(content))
+    assert any(words in one and FIRST in one for one in unknown(with_all_peaks(content, 0.1)))
+
+
+def test_blocks_that_do_not_move_prefer_no_model(content):
+    assert parts(with_all_peaks(content, 1e-4))[2]["models-apart"] == ["No block moves by any model."]
+    (alike,) = parts(with_all_peaks(content, 0.1))[2]["models-apart"][-1:]
+    assert alike.startswith(
+        "The models do not differ by more than chance in collapses or in the largest displacement"
+    )
+
+
+def test_a_case_that_moves_farther_than_the_one_shown_stands_next_to_it(content):
+    shown = most_telling(found_of(content))
+    other = FIRST if shown == FOURTH else FOURTH
+    for model in evidence(found_of(content)[other]):
+        size = content.cases[other].responses[model].samples.sizes["sample"]
+        content = with_peaks(content, other, model, np.full(size, 3.0))
+    assert most_telling(found_of(content)) == shown
+    assert f"in {other} 3000 mm" in parts(content)[0].facts[0][2]
+
+
 def test_gaps_beyond_the_first_page_are_told_all_the_same(content):
     gaps = unknown(content)
     for words in (

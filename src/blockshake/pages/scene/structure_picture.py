@@ -9,6 +9,7 @@ from blockshake.measurement.sensors.markers import point_position
 from blockshake.pages.drawing import BLUE, DARK_GREY, GREEN, ORANGE, RED, new_figure
 from blockshake.pages.scene.bodies import body_colors
 from blockshake.pages.scene.projection import Scene
+from blockshake.pages.wording import count_words
 
 _WIDTH, _HEIGHT = 0.25, 0.2  # m of paper, the height at most
 _SIDEWAYS, _ABOVE = 0.06, 0.03  # m of paper for titles and axes
@@ -55,14 +56,15 @@ def plot_understood(structure, width=_WIDTH):
             continue
         _draw_names(axes, scene, structure, scale)
         at = scene.seen(middles[[scene.shown.issuperset(pair) for pair in pairs.tolist()]])
-        axes.plot(at[:, 0], at[:, 1], "D", color=RED, markersize=2.5, label=f"{len(pairs)} joints found")
+        label = f"{count_words(len(pairs), 'joint')} found"
+        axes.plot(at[:, 0], at[:, 1], "D", color=RED, markersize=2.5, label=label)
         free = [body for body in sorted(scene.shown) if not structure.driven[body]]
         at = scene.seen(structure.position[free])
         axes.plot(at[:, 0], at[:, 1], "+", color=DARK_GREY, markersize=4.0, label="mass centres")
         _draw_sensors(axes, scene, structure)
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower right")
     blocks = int((~structure.driven).sum())
-    figure.suptitle(f"{structure.file.name}: {blocks} blocks", fontsize=8.0)
+    figure.suptitle(f"{structure.file.name}: {count_words(blocks, 'block')}", fontsize=8.0)
     return figure
 
 

@@ -19,8 +19,15 @@ from blockshake.simulation.models import solver_of
 from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.comparison.paired import models_apart, theory_of
 from blockshake.study.ensembles.coverage import is_likely
+from blockshake.study.ensembles.envelope import STILL
 from blockshake.study.limit_states.section import worst_of_each
-from blockshake.study.report.answer_figure import CURVES, plot_answer, plot_structures, structures_width
+from blockshake.study.report.answer_figure import (
+    CURVES,
+    is_off_scale,
+    plot_answer,
+    plot_structures,
+    structures_width,
+)
 from blockshake.study.report.case_outcomes import evidence, most_telling, outcomes
 from blockshake.study.report.open_questions import MOST, next_steps, unknown
 from blockshake.study.sensitivity.findings import motion_sentences
@@ -147,7 +154,7 @@ def _facts(stripes, found, shown, theory):
         (
             "Largest displacement on the slab, median run by model",
             by_level("peak", length, "mm"),
-            _WORDS.displacement(case=case, one=far),
+            _WORDS.displacement(case=case, one=far, farther=_farther(found, shown, far)),
         ),
         (
             "Margin against overturning, median run by model",
@@ -160,6 +167,18 @@ def _facts(stripes, found, shown, theory):
 def _used(ended, theory):
     """Outcome of the model that theory bears out; of the best evidence where it decides for none."""
     return {theory.borne_out: ended[theory.borne_out]} if theory and theory.borne_out else evidence(ended)
+
+
+def _farther(found, shown, far):
+    """Another case whose best evidence moves a block farther: its name and `Outcome`; None without."""
+    of_others = [
+        (one.peak, name, one)
+        for name, ended in found.items()
+        for one in evidence(ended).values()
+        if not name.startswith(shown.case.name)
+    ]
+    peak, name, one = max(of_others, default=(0.0, "", None), key=lambda item: item[0])
+    return {"name": name, "one": one} if peak > far.peak else None
 
 
 def _leaves(of_case):
@@ -191,7 +210,7 @@ def _table(stripes, found):
             "Case", "Model", "Collapsed", "Probability [%]", "Median [mm]", "All runs [mm]", "Margin [%]", "Worst [%]",
             "Left [mm]", "Block",
         ),
-        tuple(rows), "llrrrrrrrl", (1.9, 1.4, 1.1, 1.2, 0.9, 1.2, 0.8, 0.7, 0.7, 1.2),
+        tuple(rows), "llrrrrrrrl", (2.5, 1.4, 1.0, 1.2, 0.8, 1.2, 0.8, 0.7, 0.7, 0.9),
     )  # fmt: skip
 
 
@@ -206,7 +225,7 @@ def _figure(content, found, shown):
         {case.settings["structure"]: case.structure for case in content.cases.values()}.values()
     )
     return Figure(
-        _WORDS.figure(case=shown.case, one=one),
+        _WORDS.figure(case=shown.case, one=one, off_scale=is_off_scale(shown.case, one.marker)),
         svg_of(plot_answer, shown.case, one.marker),
         CURVES,
         left=Drawing(
@@ -223,6 +242,7 @@ def _differences(content, apart, tried, theory, found):
     first = next((one for one in apart if theory[one.stripe].borne_out), apart[0] if apart else None)
     return _WORDS.items(
         "differences",
+        still=all(one.most <= STILL for ended in found.values() for one in ended.values()),
         levels=any(case.levels for case in content.cases.values()),
         apart=list(of_stripe.values())[::-1],
         found=found,

@@ -17,6 +17,7 @@ _STRUCTURE = 0.016, 0.024  # m, width and height of a structure
 _BETWEEN = 0.02  # of a level, between models drawn at it
 _LEAST = 0.1  # mm, drawn for all that moves less
 _IN_A_ROW = 4  # structures
+_TYPE, _LETTER = 6.0, 2.3e-4  # points, of a name; m, width of a letter of one point
 
 
 def plot_structures(structures, case, marker):
@@ -36,7 +37,10 @@ def plot_structures(structures, case, marker):
             axes.plot(
                 at[0], at[1], "o", color=RED, markersize=3.5, markeredgecolor="white", markeredgewidth=0.5
             )
-        axes.text(0.5, 0.0, structure.file.name, transform=axes.transAxes, ha="center", va="top", fontsize=6)
+        size = min(_TYPE, _STRUCTURE[0] / (len(structure.file.name) * _LETTER))
+        axes.text(
+            0.5, 0.0, structure.file.name, transform=axes.transAxes, ha="center", va="top", fontsize=size
+        )
         axes.set(aspect="equal", anchor="S")
         axes.autoscale_view()
     return figure
@@ -45,6 +49,12 @@ def plot_structures(structures, case, marker):
 def structures_width(structures):
     """Width of `plot_structures` [m]."""
     return _STRUCTURE[0] * max(2, min(len(structures), _IN_A_ROW))
+
+
+def is_off_scale(case, marker):
+    """Whether a run of a `ReportedCase` with levels moves a marker by less than is drawn."""
+    peaks = [1e3 * one.samples["peak"].sel(frame="slab", marker=marker) for one in case.responses.values()]
+    return bool(case.levels) and min(float(one.min()) for one in peaks) < _LEAST
 
 
 def plot_answer(case, marker):

@@ -10,7 +10,7 @@ from blockshake.statistics.intervals import samples_needed, share_interval
 from blockshake.study.calibration.calibration import ALL
 from blockshake.study.comparison.paired import ALIKE
 from blockshake.study.ensembles.outcomes import count_outcomes
-from blockshake.study.report.case_outcomes import evidence
+from blockshake.study.report.case_outcomes import evidence, outcomes
 from blockshake.study.sensitivity.findings import influences, is_known
 
 MOST = 3  # sentences on the first page
@@ -115,6 +115,7 @@ def unknown(content):
         unmeasured=[case.name for case in cases if case.measured is None],
         synthetic=[case.name for case in cases if case.synthetic],
         short=[case.name for case in cases if case.settings["duration"] < strong_until(content, case)],
+        alike=_alike(content.stripes),
         falling=_by_model(cases, lambda ended: ended.falling),
         assumed=sorted({case.name for case in cases} - set(calibrated)),
         bare=bare,
@@ -129,6 +130,18 @@ def unknown(content):
         few_from=few_from if min(counted) < few_from else 0,
         upper=_UPPER,
     )
+
+
+def _alike(stripes):
+    """Stripes in which no variable changes the displacement of any block by what a marker reads."""
+
+    def is_alike(end, noise):
+        return end.counted > 1 and not end.collapsed and end.most - end.least <= noise
+
+    found = {one.name: (outcomes(one).values(), one.case.marker_noise) for one in stripes}
+    return [
+        name for name, (ended, noise) in found.items() if ended and all(is_alike(end, noise) for end in ended)
+    ]
 
 
 def _by_model(cases, count):
