@@ -11,6 +11,7 @@ from blockshake.pages.wording import listed, number
 
 NO_ERROR = "no error to remove"
 _MANY = 1e6  # from which on odds are reported in words
+_FINEST = 1e-3  # width of an interval below which its ends are numbers of three digits
 _ALONG_X = ("force", "impulse", "offset")
 _HIGH = 0.25  # of a body's height above its middle, from which on a force acts near the top
 
@@ -38,15 +39,26 @@ def range_words(lower, upper, unit):
 
 
 def estimate_words(name, estimate):
-    """An estimate of a parameter: ``0.62 mrad per m/s2 (0.48 to 0.77)``; of one along x with its side."""
+    """An estimate of a parameter: ``0.62 mrad per m/s2 (0.48 to 0.77)``; of one along x with its side.
+
+    With the decimals that two digits of the interval's width have.
+    """
     factor, unit = shown_unit(estimate.unit)
     values = [factor * one for one in (estimate.estimate, estimate.lower, estimate.upper)]
     side = ""
     if name in _ALONG_X and values[1] * values[2] > 0.0:
         side = " towards +x" if values[0] > 0.0 else " towards -x"
         values = [abs(values[0]), *sorted(map(abs, values[1:]))]
-    middle, lower, upper = map(number, values)
+    middle, lower, upper = _to_two_digits_of(values[2] - values[1], values)
     return f"{middle} {unit} ({lower} to {upper}){side}"
+
+
+def _to_two_digits_of(width, values):
+    if not (_FINEST < width < _MANY):
+        return map(number, values)
+    decimals = max(0, 1 - int(np.floor(np.log10(width))))
+    # adding zero makes a minus zero of the rounding a zero
+    return (f"{round(one, decimals) + 0.0:.{decimals}f}" for one in values)
 
 
 def place_words(place):

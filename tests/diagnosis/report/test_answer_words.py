@@ -24,13 +24,13 @@ from blockshake.pages.wording import number
 # values that the statement has to hold, by kind of decision
 STATED = {
     "none": ("No misfit larger than chance", "undamaged blocks explain all forces in 2 tests"),
-    "named": ("Probable", "eccentric mass of a block (block-2)", "offset 50 mm (45.0 to 55.0) towards +x"),
+    "named": ("Probable", "eccentric mass of a block (block-2)", "offset 50 mm (45 to 55) towards +x"),
     "ambiguous": (
         "One of",
-        "joint of low friction (joint slab / block-1), factor 41 % (36.9 to 45.1)",
-        "12 mm/s",
+        "joint of low friction (joint slab / block-1), factor 41.0 % (36.9 to 45.1)",
+        "12.0 mm/s",
     ),
-    "combination": ("Probable", "pitch of the table", "11 Hz (9.90 to 12.1)", "offset 50 mm (45.0 to 55.0)"),
+    "combination": ("Probable", "pitch of the table", "11.0 Hz (9.9 to 12.1)", "offset 50 mm (45 to 55)"),
     "unknown": (
         "Something acts, cause unknown",
         "a steady push (block-2 or block-1)",
@@ -104,10 +104,10 @@ def test_a_height_that_is_not_told_is_not_called_a_place():
 @pytest.mark.parametrize(
     ("name", "values", "unit", "words"),
     [
-        ("offset", (-0.0947, -0.105, -0.0849), "m", "94.7 mm (84.9 to 105) towards -x"),
-        ("force", (2e3, -1e3, 5e3), "N", "2 kN (-1 to 5)"),  # to either side
-        ("coefficient", (-5e-4, -6e-4, -4e-4), "rad s2/m", "-0.500 mrad per m/s² (-0.600 to -0.400)"),
-        ("factor", (0.153, 0.0, 0.384), "1", "15.3 % (0 to 38.4)"),
+        ("offset", (-0.0947, -0.105, -0.0849), "m", "95 mm (85 to 105) towards -x"),
+        ("force", (2e3, -1e3, 5e3), "N", "2.0 kN (-1.0 to 5.0)"),  # to either side
+        ("coefficient", (-5e-4, -6e-4, -4e-4), "rad s2/m", "-0.50 mrad per m/s² (-0.60 to -0.40)"),
+        ("factor", (0.153, 0.0, 0.384), "1", "15 % (0 to 38)"),
     ],
 )
 def test_sizes_have_units_and_sides(name, values, unit, words):
