@@ -161,9 +161,10 @@ def percent_words(contrast):
     """A gain with its interval in percent: ``71 % (62 to 80 %)``; from -1 to 1 where the rival is within its errors."""
     if contrast.lower <= -1.0 and contrast.upper >= 1.0:
         return NO_ERROR
-    return (
-        f"{100.0 * contrast.estimate:.0f} % ({100.0 * contrast.lower:.0f} to {100.0 * contrast.upper:.0f} %)"
+    middle, lower, upper = (
+        f"{100.0 * one:.0f}" for one in (contrast.estimate, contrast.lower, contrast.upper)
     )
+    return f"{middle} %" if lower == upper else f"{middle} % ({lower} to {upper} %)"
 
 
 def estimate_in_si(estimate):

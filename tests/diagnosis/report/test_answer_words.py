@@ -38,7 +38,7 @@ STATED = {
     ),
 }
 NOT_DISTINGUISHED = {
-    "named": ("The other cause that was tried, an edge that changed", "160,000 times"),
+    "named": ("The only other cause tried is 160,000 times less probable: an edge that changed",),
     "ambiguous": ("Joint of low friction", "friction that falls with slip rate (4.5 times)", "20 times"),
     "unknown": (
         "The nearest of 2 other causes is",
@@ -88,7 +88,9 @@ def test_until_then_is_the_largest_upper_limit_of_the_drift_of_all_sealed_tests(
 def test_every_part_of_a_combination_has_its_own_sentence(found):
     of_slab, of_joints = not_distinguished(found["combination"])
     assert of_slab.startswith("Rotation of the slab: no other cause")
-    assert of_joints.startswith("Joints: the other cause that was tried, an edge that changed")
+    assert of_joints.startswith(
+        "Joints: the only other cause tried is 160,000 times less probable: an edge that changed"
+    )
 
 
 def test_a_height_that_is_not_told_is_not_called_a_place():

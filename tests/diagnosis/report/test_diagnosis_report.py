@@ -117,16 +117,14 @@ def test_a_gain_on_forces_is_no_headline_where_that_on_responses_may_be_nothing(
     _, value, note = document.sections[0].blocks[0].facts[2]
     assert value == "none shown"
     assert "0 % (-10 to 10 %)" in note
-    assert note.endswith("on forces 80 % (70 to 90 %)")
+    assert note.endswith("on their forces: 80 % (70 to 90 %)")
 
 
 def test_a_gain_on_forces_alone_is_no_prediction(documents):
     """Nothing was simulated at quick effort; what the forces gain stands in the note."""
     _, value, note = documents["unknown"].sections[0].blocks[0].facts[2]
     assert value == "not simulated"
-    assert note == (
-        "effort quick simulates no response; of the forces read off the sealed tests 80 % (70 to 90 %)"
-    )
+    assert note == ("effort quick simulates no response; on the forces read off them: 80 % (70 to 90 %)")
 
 
 def test_none_says_which_sizes_would_have_been_seen(documents):

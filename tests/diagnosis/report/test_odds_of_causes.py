@@ -14,8 +14,8 @@ from blockshake.pages.blocks import Text
 @pytest.mark.parametrize(
     ("gain", "expected", "p", "words"),
     [
-        (15.0, 16.0, 1.7e-5, "probability of 1.7e-05 at most: the cause holds at the level of 0.05"),
-        (2.0, 16.0, 1.0, "probability of 1 at most: the cause does not hold at the level of 0.05"),
+        (15.0, 16.0, 1.7e-5, "tried: p = 1.7e-05. The cause holds at the level of 0.05"),
+        (2.0, 16.0, 1.0, "tried: p = 1. The cause does not hold at the level of 0.05"),
         (0.1, 0.3, 1.0, "Held out: t4 cannot tell"),
     ],
 )

@@ -8,7 +8,7 @@ from blockshake.diagnosis.answer.thresholds import FREE_SHARE
 from blockshake.diagnosis.evidence.explanation import NEVER
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.diagnosis.report.statement import RATIO
-from blockshake.diagnosis.wording import name_of, times_words
+from blockshake.diagnosis.wording import chance_words, name_of, times_words
 from blockshake.pages.blocks import Section, Table, Text
 from blockshake.pages.words import Words
 
@@ -26,7 +26,11 @@ def _of_part(part):
     """The table of a part, and how its first cause fares on the tests to select by."""
     yield _table(part)
     if part.held_out:
-        yield Text(_COUNTED.held_out(part.causes[0].title, part.held_out, HELD_OUT_LEVEL))
+        yield Text(
+            _COUNTED.held_out(
+                part.causes[0].title, part.held_out, chance_words(part.held_out.p), HELD_OUT_LEVEL
+            )
+        )
 
 
 def _table(part):
@@ -37,7 +41,7 @@ def _table(part):
     for name in sorted(odds, key=odds.get):
         kind = "" if name is None else "form from outside" if name in FORMS else "effect"
         less = times_words(odds[name]) if odds[name] > 0.0 else "the most probable"
-        factor = f"{part.gains[name]:.1f}" if name else "0"
+        factor = f"{round(part.gains[name], 1) + 0.0:.1f}" if name else "0"
         rows.append((name_of(name) if name else "nothing", kind, less, factor))
     words = _COUNTED.table(part.readings, first.title, RATIO)
     return Table(words, ("Cause", "Kind", "Less probable", "Log Bayes factor"), tuple(rows), "llrr")
