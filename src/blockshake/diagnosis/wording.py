@@ -149,7 +149,7 @@ def times_words(odds):
 def beyond(effect, value):
     """A size in words from which on an effect would have been seen."""
     first = EFFECTS[effect].parameters[0]
-    return f"{'below' if first.visible < first.null else 'beyond'} {size_words(value, first.unit)}"
+    return f"{'below' if first.visible < first.null else 'beyond'} {size_words(value, first.unit, 2)}"
 
 
 def chance_words(p):
