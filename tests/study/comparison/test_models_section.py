@@ -38,7 +38,7 @@ def test_every_block_has_its_numbers_by_every_model(content):
     assert "LS-DEM (" not in peak.caption
     # the made-up blocks and the virtual test sway until the end
     assert moving.text.startswith(
-        f"{FIRST}: what displacement remains is unknown, for every block moves. Still"
+        f"{FIRST}: the residual displacement is unknown, for every block moves. Still"
     )
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from blockshake.pages.blocks import Table, Text
 from blockshake.pages.rows import face_markers, top_markers
 from blockshake.pages.wording import MISSING, given, limited, millimetres, model_label, number, sentence_case
-from blockshake.pages.words import fine_length
+from blockshake.pages.words import Words, fine_length
 from blockshake.simulation.models import solver_of
 from blockshake.statistics.intervals import SURE_FROM
 from blockshake.study.comparison.comparison import CHANGES, MOST
@@ -15,24 +15,16 @@ from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
 from blockshake.study.ensembles.envelope import is_moving, still_moves
 
 MOVING = "still moving"  # in place of a residual
-_SWINGS = (
-    f"{sentence_case(MOVING)[:-1]}: the block changes its place in the last second by more than 1 mm and a 20th of its "
-    "peak, in half of the samples or more."
-)
+_WORDS = Words(__name__)
 
 
 def block_tables(case):
     """Peak and residual of every block by every model, a table each, or a sentence where all blocks still move."""
-    at_end = f"mean over the last {given(RESIDUAL_WINDOW)} s of the window"
-    limits = (
-        f"In brackets limits of 95 % by order statistics, which fewer than {SURE_FROM} samples do not bear."
-    )
     captions = {
-        "peak": f"peak displacement along x relative to the slab [mm], median over the n samples. {limits}",
-        "residual": f"residual displacement ({at_end}) relative to the slab [mm], median over those of the n samples "
-        f"that did not fall. {_SWINGS} {limits}",
+        "peak": _WORDS.peak(case.name, SURE_FROM),
+        "residual": _WORDS.residual(case.name, SURE_FROM, RESIDUAL_WINDOW),
     }
-    return [_block_table(case, name, f"{case.name}: {words}") for name, words in captions.items()]
+    return [_block_table(case, name, words) for name, words in captions.items()]
 
 
 def _block_table(case, name, caption):
@@ -45,7 +37,7 @@ def _block_table(case, name, caption):
     labels = (f"{model_label(model)} (n = {int(counted.sel(model=model))})" for model in case.responses)
     header = ("Block", *read, *labels)
     if {cell for row in rows for cell in row[1:]} == {MOVING}:
-        return Text(f"{case.name}: what displacement remains is unknown, for every block moves. {_SWINGS}")
+        return Text(_WORDS.all_move(case.name))
     return Table(caption, header, tuple(rows), "l" + "r" * (len(header) - 1))
 
 
@@ -79,11 +71,7 @@ def pairs_table(content):
                 _seconds(at["parting_time"], stripe.case),
             ))  # fmt: skip
     return Table(
-        "Pairs of models. Distance: of the ensembles; chance: the distance that 95 of 100 random divisions of the same "
-        "samples into two ensembles stay below. Difference: of the same sample by both models, mean over times and "
-        "blocks, median over the n samples that both ran, with limits by order statistics. Floor: the same difference "
-        "of one sample from its replicate at half the time step, by each of the two models. Parting: when the same "
-        f"sample by both models is first distinguished, median. {MISSING}: too few samples, or no replicate.",
+        _WORDS.pairs(MISSING),
         (
             "Case", "Models", "Distance [mm]", "Chance [mm]", "Difference [mm]", "n", "Floors [mm]", "Parting [s]",
         ),
@@ -106,11 +94,7 @@ def two_levels_table(content):
     if not rows:
         return None
     return Table(
-        "Mean over the samples of the largest displacement of any marker along x relative to the slab. With the help: "
-        f"rigid NSCD runs the same samples and more ({MOST} at most are read), and what its mean changes by these is "
-        "taken over times the coefficient (a control variate, Cochran 1977), with limits of 95 %. Gain: the variance "
-        "of the mean alone over that with the help; so many times the samples of the model would do as much. Cases "
-        "where a sample of either model did not complete are left out.",
+        _WORDS.two_levels(MOST),
         ("Case", "Model", "n", "Mean [mm]", "With the help [mm]", "Correlation", "Coefficient", "Variance ratio"),
         tuple(rows), "llrrrrrr",
     )  # fmt: skip
@@ -132,13 +116,7 @@ def other_settings_table(content):
         rows.append((f"{stripe.name}, {body}", model_label(model), str(int(own["changed"])), *chain(*pairs)))
     heads = (f"{head} [mm]" for name in CHANGES for head in (name.capitalize(), "Change"))
     return Table(
-        "One solver with other settings, at the top block of every leaf, along x relative to the slab. Peak and "
-        "residual: medians over the samples by the model of the solver's plain name; width of its envelope: mean "
-        f"difference of two samples. {_SWINGS} Change: what the same n samples by the named model have more, of peak "
-        "and residual the median of the differences with limits of 95 % by order statistics, of the width with "
-        "bootstrap limits. Limits that hold zero show no change. A sample that failed by either model is left out of "
-        "n, and one that fell has no residual and the peak that it had reached. "
-        f"{MISSING.capitalize()}: too few samples.",
+        _WORDS.other_settings(MISSING),
         ("Case, block", "Model", "n", *heads),
         tuple(rows),
         "llrrrrrrr",
@@ -159,9 +137,7 @@ def scores_table(content):
         cells = (limited(at.sel(model=model), "score", millimetres) for model in models)
         rows.append((case.name, case.curve_word, *cells, best))
     return Table(
-        "Continuous ranked probability score of every model against the measured curves [mm], mean over times and "
-        "blocks, fair to small ensembles; the lower the better. In brackets bootstrap limits of 95 %, "
-        f"none with fewer than {SURE_FROM} samples. {MISSING}: fewer than three samples.",
+        _WORDS.scores(SURE_FROM, MISSING),
         ("Case", "Curves", *map(model_label, models), "Lowest"), tuple(rows), "ll" + "r" * len(models) + "l",
     )  # fmt: skip
 

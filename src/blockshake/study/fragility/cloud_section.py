@@ -11,10 +11,12 @@ from blockshake.pages.wording import (
     model_label,
     percent,
 )
+from blockshake.pages.words import Words
 from blockshake.study.ensembles.drift_limits import limits_joints
 from blockshake.study.fragility.figure import failed, measure_words, plot_clouds
 from blockshake.study.fragility.fragility import SAFE
 
+_WORDS = Words(__name__)
 _METHODS = {"regression": "cloud (regression)", "counts": "counts (maximum likelihood)"}
 
 
@@ -30,26 +32,10 @@ def cloud_blocks(content):
         return []
     given = content.study["ladder"]["largest_drift"]
     limits = millimetre_range(np.hstack([one["largest_drift"] for one in clouds.values()]))
-    words = (
-        "Every sample is shaken once, by a motion of its own. It does not pass when it collapses, still falls as its "
-        f"window ends, or a marker moves along x from the slab by more than the limit of its block, {limits} mm"
-        f"{', or a joint slips by more than its own' if limits_joints(given) else ''}. The "
-        "cloud is the regression of the logarithm of that displacement on the logarithm of the intensity, over the "
-        "samples that stand and move, with a logistic regression of the falls (Jalayer and Cornell 2009). The counts "
-        "are fitted by the lognormal curve of largest likelihood (Baker 2015, Eq. 11). The regression needs no "
-        "sample that fails, and rests on its straight line; the counts need both outcomes, and rest on no "
-        "displacement. The dispersion is the standard deviation of the logarithm of the intensity at which a sample "
-        "fails, for the regression half the logarithm of the ratio of its 84 and 16 % intensities. It holds the "
-        "scatter from motion to motion and that of the sampled variables."
-    )
-    if any(one.attrs["weight"] < 1.0 for one in clouds.values()):
-        words += (
-            " Samples that draw the same record at the same level count together as one in the limits here; the other "
-            "sections take all samples as independent, so that their limits are too narrow where records repeat."
-        )
+    weighted = any(one.attrs["weight"] < 1.0 for one in clouds.values())
     return [
         Heading("Motions that the samples draw", "clouds"),
-        Text(words),
+        Text(_WORDS.method(limits, limits_joints(given), weighted)),
         *(_figure(name, clouds) for name in dict.fromkeys(name for name, _ in clouds)),
         _table(clouds),
     ]
@@ -58,10 +44,7 @@ def cloud_blocks(content):
 def _figure(name, clouds):
     """Samples and fragilities of a case, a row a model."""
     return Figure(
-        f"{name}. Left: largest displacement of a marker from the slab, as a share of its limit, over the intensity, "
-        "and the regression; crosses: samples that fell, at the upper edge. Right: probability of not passing by both "
-        "methods, with limits of 95 %; squares: share of the samples at a level that do not pass, with limits of "
-        f"Clopper and Pearson. Dotted: {percent(SAFE)} %.",
+        _WORDS.figure(name, percent(SAFE)),
         svg_of(
             plot_clouds, {model_label(model): one for (case, model), one in clouds.items() if case == name}
         ),
@@ -78,9 +61,7 @@ def _table(clouds):
             figures = [limited(one, what) for what in ("median", "dispersion", "safe")]
             rows.append((name, model_label(model), *drawn, label, measure, *figures))
     return Table(
-        f"Fragilities: intensity at which half and {percent(SAFE)} % of the samples do not pass, and dispersion, with "
-        "limits of 95 % in brackets: of the regression by its parameters' posterior, of the counts by likelihood. "
-        f"{MISSING.capitalize()}: the samples do not tell.",
+        _WORDS.table(percent(SAFE), MISSING),
         ("Case", "Model", "Motions", "Not passed", "Method", "Intensity", "Median", "Dispersion", f"{percent(SAFE)} %"),
         tuple(rows), "llrrllrrr",
     )  # fmt: skip
