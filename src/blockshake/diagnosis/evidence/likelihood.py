@@ -26,6 +26,8 @@ class Likelihood:
     value: np.ndarray  # float64 (n_all_rows,); whitened rows
     nuisances: np.ndarray  # float64 (n_all_rows, n_nuisances); whitened, with standard normal amplitudes
     prior: float  # logarithm of the prior of this likelihood among others
+    # what depends on the roots alone, kept where many values are held against the same causes; None: nothing is kept
+    kept: dict | None = None
 
     @cached_property
     def ends(self):
@@ -53,6 +55,14 @@ class Likelihood:
         # ln |C| of the whitening, which evidences under one noise model share and those of two do not
         spread = sum(np.log(np.diag(root)).sum() for root in self.roots)
         return self.log_evidence_of_rows - spread + self.prior
+
+    def keeping(self, key, compute):
+        """What ``compute`` gives, from the roots alone: once by key where anything is kept."""
+        if self.kept is None:
+            return compute()
+        if key not in self.kept:
+            self.kept[key] = compute()
+        return self.kept[key]
 
     def whiten(self, columns):
         """Columns, one array (n_rows, n_columns) a test, in units of the covariance: (n_all_rows, n_columns)."""

@@ -120,7 +120,12 @@ def _detectability(name, campaigns):
     if known:
         sizes = known[place] * np.array(_SIZES)
         sizes = np.append(sizes[sizes < largest(name)], largest(name))
-        found = [_chances(name, place, size, campaigns) for size in sizes]
+        found = []
+        for size in sizes:
+            found.append(_chances(name, place, size, campaigns))
+            # of larger sizes nothing more is asked
+            if min(found[-1].values()) >= SEEN:
+                break
         apart = {rival: _first(sizes, [one.get(rival, 0.0) for one in found]) for rival in found[-1]}
     shown = (
         {key: None if size is None else from_null(name, size) for key, size in sizes.items()}

@@ -8,7 +8,7 @@ from scipy.special import ndtr
 from blockshake.diagnosis.answer.answer import COARSENING, rank
 from blockshake.diagnosis.answer.explain import Evidence, explain, gather_evidence
 from blockshake.diagnosis.answer.limits import SURELY, from_null, limits_of, usual_column
-from blockshake.diagnosis.answer.places import EVERYWHERE, place_of
+from blockshake.diagnosis.answer.places import EVERYWHERE, joined_bodies, place_of
 from blockshake.diagnosis.answer.static_tests import distance, expected_readings
 from blockshake.diagnosis.answer.thresholds import ODDS, Thresholds, by_odds
 from blockshake.diagnosis.evidence.closed_joints import closed_joints
@@ -30,7 +30,9 @@ class NominalCampaign:
         self.seen = seen
         self._evidence = gather_evidence(seen)
         self._slabs = [slab_motion(test) for test in seen]
-        self._closed = closed_joints(seen)
+        # one likelihood holds all that is tried
+        self._usual = self._evidence and replace(self._evidence.usual, kept={})
+        self._closed, self._joined = closed_joints(seen), joined_bodies(seen)
         self.limits = limits_of(self._evidence, self._slabs, self._closed, Thresholds())
 
     def chance_seen(self, name, place, size):
@@ -71,7 +73,7 @@ class NominalCampaign:
         soft, evidence = name == JOINT_COMPLIANCE.name, self._evidence
         if evidence is None or (not soft and (name, place) not in evidence.keys):
             return {}
-        likelihood, variants = evidence.usual, evidence.tried.variants.get((name, place), [])
+        likelihood, variants = self._usual, evidence.tried.variants.get((name, place), [])
         value = np.zeros_like(likelihood.value)
         if soft and variants:
             nearest = min(variants, key=lambda one: abs(np.log(one[0].values["compliance"] / size)))
@@ -82,7 +84,9 @@ class NominalCampaign:
         closed = {
             joint: one.expected(size * (soft and joint == place)) for joint, one in self._closed.items()
         }
-        ranked = {rival.cause: rival for rival in rank(Evidence(evidence.tried, [explained]), closed)}
+        ranked = {
+            rival.cause: rival for rival in rank(Evidence(evidence.tried, [explained]), closed, self._joined)
+        }
         if name not in ranked:
             return {}
         own, found = ranked.pop(name), {}
