@@ -141,12 +141,12 @@ def read_text(path):
 
 
 def read_foreign_text(path):
-    """Text of a file that another program wrote: UTF-8, UTF-16 with its mark, else Windows-1252 or Latin-1.
+    """Text of a file that another program wrote: UTF-8, UTF-16 with its mark, else Windows-1252.
 
     Raises
     ------
     InputError
-        The file is missing, or is none.
+        The file is missing, or is no regular file.
     """
     content = read_bytes(path)
     try:

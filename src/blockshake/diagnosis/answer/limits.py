@@ -36,7 +36,7 @@ def limits_of(evidence, slabs, closed, thresholds, without=()):
     Returns
     -------
     dict of str to dict of str to float
-        Of the effect's first parameter, in its unit; only places where the tests tell it.
+        Limit of the effect's first parameter, in its unit; only places where the tests tell it.
 
     Notes
     -----
@@ -88,8 +88,8 @@ def from_null(name, distance):
 def usual_column(name, variants, likelihood):
     """Whitened rows, (n_rows,), of the variant whose parameters other than the size are nearest to their usual values.
 
-    Of several, such as an oscillator of any damping, the one of which the likelihood tells least. With them one over
-    the variance of the amplitude, nuisances free.
+    Where several are, such as an oscillator of any damping, the one that the likelihood tells least of. With them one
+    over the variance of the amplitude, nuisances free.
     """
     usual = {one.name: one.null for one in EFFECTS[name].parameters[1:]}
 
@@ -121,6 +121,7 @@ def _by_place(name, likelihood, by_place, needed):
             gains.append(
                 mean_evidence([best_of(expected, name, one, tried).gain for one, tried in by_place.items()])
             )
+        # q and o of `limits_of` through two sizes; then the root of q a^2 - SURELY a - o = 0 in units of s
         share = (gains[1] - gains[0]) / (_TRIED[1] ** 2 - _TRIED[0] ** 2)
         cost = share * _TRIED[0] ** 2 - gains[0] + needed
         if share > 0.0:
@@ -161,7 +162,7 @@ def _lifted(name, slabs, needed):
 
 
 def excluded_above(limits, structure):
-    """Sizes above which an effect would have been seen wherever it may be, by name; of effects that have one alone."""
+    """Sizes above which an effect would have been seen wherever it may be, by name of the effect."""
     sizes = {}
     for name, by_place in limits.items():
         effect = EFFECTS[name]
@@ -176,7 +177,7 @@ def excluded_above(limits, structure):
 def cannot_see(seen_tests):
     """Lines on motions and joints of seen tests that the sensors do not show.
 
-    There is none where every motion of every body is read in every test, and every joint has moved in some test.
+    One line too for a test without a quiet start, for a single test, and for bodies on several joints.
     """
     resting = [seen for seen in seen_tests if seen.still.any()]
     lines = [

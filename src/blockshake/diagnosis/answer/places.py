@@ -16,7 +16,7 @@ def place_name(place):
 
 
 def unmoved_joints(tests):
-    """Indices of the faces that turned, slipped and lifted in no seen test, of those whose force is read in one."""
+    """Indices of the joints whose force some test reads, and that turned, slipped or lifted in none of these."""
     found = []
     for index in range(len(tests[0].faces)):
         read = [seen for seen in tests if np.isfinite(seen.forces.force[:, index]).any()]
@@ -34,7 +34,7 @@ def unmoved_joints(tests):
 
 
 def joined_bodies(tests):
-    """Sets of names of free bodies whose common joints moved in no seen test: one place to whatever acts on a body."""
+    """Sets of names of free bodies whose common joints moved in no seen test: no test tells which a cause acts on."""
     structure, faces = tests[0].structure, tests[0].faces
     groups = [{structure.body_names[body]} for body in tests[0].free]
     for index in unmoved_joints(tests):

@@ -57,7 +57,7 @@ class Likelihood:
         return self.log_evidence_of_rows - spread + self.prior
 
     def keeping(self, key, compute):
-        """What ``compute`` gives, from the roots alone: once by key where anything is kept."""
+        """Result of ``compute``, which depends on the roots alone: computed once by key where anything is kept."""
         if self.kept is None:
             return compute()
         if key not in self.kept:

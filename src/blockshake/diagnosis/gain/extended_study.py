@@ -57,7 +57,7 @@ def extend_study(verdict: AnyPath, study: AnyPath, output: AnyPath) -> list[str]
     study : str or path
         Configuration of an ordinary study.
     output : str or path
-        Of the extended study; the files of its structures, and of the correlation where there is any, lie with it
+        The extended study; the files of its structures, and of the correlation where there is any, lie with it
         and begin with its name.
 
     Returns
@@ -69,7 +69,7 @@ def extend_study(verdict: AnyPath, study: AnyPath, output: AnyPath) -> list[str]
     ------
     InputError
         A verdict of another version or that names nothing that a structure can hold, a study without a structure that
-        has the cause, or one whose variables or names clash with it. Nothing is written.
+        has the cause, or one whose variables or names clash with it. Files that were there before stay as they are.
 
     Examples
     --------

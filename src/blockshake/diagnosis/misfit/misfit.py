@@ -14,15 +14,15 @@ def misfit(tests):
     Parameters
     ----------
     tests : list of JudgedTest
-        Of the nominal ensemble; the same members in all, in one order.
+        Tests of the nominal ensemble; the same members in all, in one order.
 
     Returns
     -------
     xarray.Dataset
         Along ``test`` and ``cell`` what `JudgedTest.bands` gives, the only kind left out; ``score``, the continuous
         ranked probability score of the ensemble, mean over the times until the horizon [unit of the cell];
-        ``usual``, the median of the members' own, each by the others; ``chance``, the share of the members, the
-        measured test counted with them, whose score is as large [1]; ``worst_time``, at which the measured curve
+        ``usual``, the median of the members' leave-one-out scores; ``chance``, the share of the members, the measured
+        test counted with them, whose score is as large [1]; ``worst_time``, at which the measured curve
         is farthest from the median in units of the spread [s]; and ``p``, chance of the largest score over its usual
         one in all tests and cells. Attribute ``where``: the place of the largest in words.
 

@@ -60,7 +60,7 @@ class Plan:
     def opened(self):
         """All open tests as they are simulated, `PlannedTest` by name; none of a campaign whose motions are not known.
 
-        So it is of free flight and of outcomes too.
+        Free flight and outcomes have none either.
         """
         campaign = self.campaign
         if not campaign.kind.ensembles:

@@ -11,10 +11,10 @@ _SMALLEST = np.radians(0.3)
 _LARGEST = np.radians(20.0)  # of the lean that counts as a fall
 _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(9)  # of what a test has beyond its motion's peaks
 _LOG_WEIGHTS = np.log(_WEIGHTS / _WEIGHTS.sum())
-_RIDGE = 2.0  # standard deviation of a slope's prior
+_RIDGE = 2.0  # standard deviation of the prior of a slope, and of the logarithm of either spread
 DISCREPANCIES = np.array(
     [0.0, 0.25, 0.5, 1.0, 2.0]
-)  # of measured from simulated leans, as logarithms; alike likely
+)  # of measured from simulated leans, as logarithms; equally probable
 
 
 class Emulator(NamedTuple):
@@ -25,7 +25,7 @@ class Emulator(NamedTuple):
     # the test has of its own
     means: np.ndarray
     log_weights: np.ndarray  # float64 (n_tests, n_nodes); of the nodes, after the simulated leans of the test
-    spread: float  # standard deviation of the logarithm with
+    spread: float  # standard deviation of that logarithm given the node
 
     def chance(self, tests, shares):
         """Chance of a fall, float64 (n_discrepancies, n_tests, n_models), by models of ``shares`` (n_models, n)."""
@@ -46,8 +46,8 @@ def emulate(outcomes):
     """`Emulator` of the simulated outcomes of all tests by one solver.
 
     ``outcomes`` is the Dataset of `simulate_outcomes`. The logarithm of the lean goes with the logarithms of the
-    motion's peak acceleration and velocity, with the shares and their squares, with something of each test's own, and
-    with what no model has. A lean below 0.3 degrees is known to be that alone, and a fall to be beyond 20 degrees
+    motion's peak acceleration and velocity, with the shares and their squares, with a random effect of each test, and
+    with a residual. A lean below 0.3 degrees is known to be that alone, and a fall to be beyond 20 degrees
     (Tobin 1958, Econometrica 26); runs that were not finished are left out.
     """
     lean = outcomes["lean"].to_numpy()
@@ -59,7 +59,7 @@ def emulate(outcomes):
     peaks = np.log([outcomes["pga"].to_numpy(), outcomes["pgv"].to_numpy()]).T
     peaks = np.clip(peaks, np.log(1e-6), None)
     of_motion = np.column_stack([np.ones(len(peaks)), peaks, peaks**2, peaks.prod(axis=1)])
-    # standardised, so that one prior holds for all
+    # standardised, so that the search steps alike in all
     middle, scale = of_motion[:, 1:].mean(axis=0), of_motion[:, 1:].std(axis=0)
     of_motion[:, 1:] = (of_motion[:, 1:] - middle) / np.maximum(scale, 1e-9)
     n_motion, n_shares = of_motion.shape[1], columns.shape[2]

@@ -15,14 +15,14 @@ from blockshake.study.ensembles.ensemble import RESIDUAL_WINDOW
 from blockshake.study.ensembles.envelope import is_moving, still_moves
 
 MOVING = "still moving"  # in place of a residual
-_WORDS = Words(__name__)
+_CAPTIONS = Words(__name__)
 
 
 def block_tables(case):
     """Peak and residual of every block by every model, a table each, or a sentence where all blocks still move."""
     captions = {
-        "peak": _WORDS.peak(case.name, SURE_FROM),
-        "residual": _WORDS.residual(case.name, SURE_FROM, RESIDUAL_WINDOW),
+        "peak": _CAPTIONS.peak(case.name, SURE_FROM),
+        "residual": _CAPTIONS.residual(case.name, SURE_FROM, RESIDUAL_WINDOW),
     }
     return [_block_table(case, name, words) for name, words in captions.items()]
 
@@ -37,7 +37,7 @@ def _block_table(case, name, caption):
     labels = (f"{model_label(model)} (n = {int(counted.sel(model=model))})" for model in case.responses)
     header = ("Block", *read, *labels)
     if {cell for row in rows for cell in row[1:]} == {MOVING}:
-        return Text(_WORDS.all_move(case.name))
+        return Text(_CAPTIONS.all_move(case.name))
     return Table(caption, header, tuple(rows), "l" + "r" * (len(header) - 1))
 
 
@@ -71,7 +71,7 @@ def pairs_table(content):
                 _seconds(at["parting_time"], stripe.case),
             ))  # fmt: skip
     return Table(
-        _WORDS.pairs(MISSING),
+        _CAPTIONS.pairs(MISSING),
         (
             "Case", "Models", "Distance [mm]", "Chance [mm]", "Difference [mm]", "n", "Floors [mm]", "Parting [s]",
         ),
@@ -94,7 +94,7 @@ def two_levels_table(content):
     if not rows:
         return None
     return Table(
-        _WORDS.two_levels(MOST),
+        _CAPTIONS.two_levels(MOST),
         ("Case", "Model", "n", "Mean [mm]", "With the help [mm]", "Correlation", "Coefficient", "Variance ratio"),
         tuple(rows), "llrrrrrr",
     )  # fmt: skip
@@ -116,7 +116,7 @@ def other_settings_table(content):
         rows.append((f"{stripe.name}, {body}", model_label(model), str(int(own["changed"])), *chain(*pairs)))
     heads = (f"{head} [mm]" for name in CHANGES for head in (name.capitalize(), "Change"))
     return Table(
-        _WORDS.other_settings(MISSING),
+        _CAPTIONS.other_settings(MISSING),
         ("Case, block", "Model", "n", *heads),
         tuple(rows),
         "llrrrrrrr",
@@ -137,7 +137,7 @@ def scores_table(content):
         cells = (limited(at.sel(model=model), "score", millimetres) for model in models)
         rows.append((case.name, case.curve_word, *cells, best))
     return Table(
-        _WORDS.scores(SURE_FROM, MISSING),
+        _CAPTIONS.scores(SURE_FROM, MISSING),
         ("Case", "Curves", *map(model_label, models), "Lowest"), tuple(rows), "ll" + "r" * len(models) + "l",
     )  # fmt: skip
 

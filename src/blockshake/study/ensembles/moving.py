@@ -15,7 +15,7 @@ from blockshake.pages.wording import given, millimetres, model_label
 from blockshake.study.ensembles.shown_samples import shown_markers
 
 MAGNIFICATIONS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
-_LARGEST_SHARE = 0.1  # of the structure's height: displacement of the median samples in the still
+_LARGEST_SHARE = 0.1  # of the height of the highest mass centre over the lowest: displacement in the still
 _FINEST = 1e-5  # m and rad, of the whole numbers of the positions
 _MOST = 32767  # a whole number of two bytes
 _NONE = -32768  # where no marker was read
@@ -70,7 +70,7 @@ def moving_samples(case):
 
 
 def plot_still(case):
-    """Figure of the median sample by every model at the time of its largest shift, with the measured markers.
+    """Figure of the median sample by every model at its largest displacement along x, with the measured markers.
 
     Magnified as `usual_magnification` states; markers on faces that look away are left out.
     """
@@ -80,6 +80,7 @@ def plot_still(case):
     figure = new_figure(0.075)
     panels = figure.subplots(1, len(found), sharex=True, sharey=True, squeeze=False)[0]
     for axes, (model, shown) in zip(panels, found.items(), strict=True):
+        # the first shown is the median one
         one = shown.isel(sample=0).transpose("time", "body", "axis")
         frame = int(np.abs(one["shift"].sel(axis="x")).max("body").argmax("time"))
         draw_blocks(axes, scene, case.structure, *_moved(case.structure, one.isel(time=frame), magnification))

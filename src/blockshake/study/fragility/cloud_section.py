@@ -16,7 +16,7 @@ from blockshake.study.ensembles.drift_limits import limits_joints
 from blockshake.study.fragility.figure import failed, measure_words, plot_clouds
 from blockshake.study.fragility.fragility import SAFE
 
-_WORDS = Words(__name__)
+_CLOUD = Words(__name__)
 _METHODS = {"regression": "cloud (regression)", "counts": "counts (maximum likelihood)"}
 
 
@@ -35,7 +35,7 @@ def cloud_blocks(content):
     weighted = any(one.attrs["weight"] < 1.0 for one in clouds.values())
     return [
         Heading("Motions that the samples draw", "clouds"),
-        Text(_WORDS.method(limits, limits_joints(given), weighted)),
+        Text(_CLOUD.method(limits, limits_joints(given), weighted)),
         *(_figure(name, clouds) for name in dict.fromkeys(name for name, _ in clouds)),
         _table(clouds),
     ]
@@ -44,7 +44,7 @@ def cloud_blocks(content):
 def _figure(name, clouds):
     """Samples and fragilities of a case, a row a model."""
     return Figure(
-        _WORDS.figure(name, percent(SAFE)),
+        _CLOUD.figure(name, percent(SAFE)),
         svg_of(
             plot_clouds, {model_label(model): one for (case, model), one in clouds.items() if case == name}
         ),
@@ -61,7 +61,7 @@ def _table(clouds):
             figures = [limited(one, what) for what in ("median", "dispersion", "safe")]
             rows.append((name, model_label(model), *drawn, label, measure, *figures))
     return Table(
-        _WORDS.table(percent(SAFE), MISSING),
+        _CLOUD.table(percent(SAFE), MISSING),
         ("Case", "Model", "Motions", "Not passed", "Method", "Intensity", "Median", "Dispersion", f"{percent(SAFE)} %"),
         tuple(rows), "llrrllrrr",
     )  # fmt: skip

@@ -108,6 +108,8 @@ def _of_joint(run, measure, joint):
         return float(np.linalg.norm(moved - gaps[..., None] * normal, axis=-1).max())
     if measure == "impact_velocity":
         return max(_fastest(gap, run.time) for gap in gaps.T)
+    if measure not in ("uplift", "opening"):
+        raise ValueError(measure)
     return float(gaps.max())
 
 

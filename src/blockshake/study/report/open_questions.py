@@ -57,7 +57,7 @@ def next_steps(content, stripes, found, apart, theory):
 
 
 def _samples(stripes, best):
-    """How many samples would tell more of the least known probability, and what is known of it now; None if enough."""
+    """Samples that would narrow the widest probability, and what is known of it now; None if there are enough."""
     enough = next(size for size in count(1) if share_interval(0, size)[1] <= _RARE)
     open_now = []
     for name, ended in best.items():
@@ -73,6 +73,7 @@ def _samples(stripes, best):
         return None
     _, name, model, one = max(open_now, key=lambda item: item[0])
     levels = len(stripes[name].case.stripes)
+    # limits of a share shrink with the root of the number: four times as many halve them
     size = 4 * one.counted if one.collapsed else enough
     return {"size": size * levels, "levels": levels, "place": name, "model": model, "one": one, "rare": _RARE}
 
@@ -133,7 +134,7 @@ def unknown(content):
 
 
 def _alike(stripes):
-    """Stripes in which no variable changes the displacement of any block by what a marker reads."""
+    """Stripes in which no variable changes the displacement of any block by more than the noise of a marker."""
 
     def is_alike(end, noise):
         return end.counted > 1 and not end.collapsed and end.most - end.least <= noise
@@ -145,7 +146,7 @@ def _alike(stripes):
 
 
 def _by_model(cases, count):
-    """Case, model, how many of its samples count, and of how many."""
+    """Case, model, the samples that ``count`` finds among the outcomes, and of how many."""
     return [
         (case.name, model, some, one.samples.sizes["sample"])
         for case in cases
