@@ -8,7 +8,7 @@ from scipy.special import ndtri
 from blockshake.diagnosis.answer.answer import soft_gains
 from blockshake.diagnosis.answer.places import EVERYWHERE, place_name, unmoved_joints
 from blockshake.diagnosis.evidence.explanation import best_of, mean_evidence
-from blockshake.diagnosis.evidence.slab_motion import explain_lift, slab_turns
+from blockshake.diagnosis.evidence.slab_motion import lift_gain, lift_ratios, lift_roots, slab_turns
 from blockshake.effects.joint_compliance import COMPLIANCES
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
 from blockshake.effects.registry import EFFECTS
@@ -153,9 +153,10 @@ def _soft(likelihood, by_place, needed, closed):
 
 def _lifted(name, slabs, needed):
     """For a vertical motion of the slab in proportion to the horizontal one: the smallest that is tried and seen."""
-    deviation = float(np.sqrt(explain_lift(EFFECTS[name], slabs).best.covariance[0, 0]))
+    best = max(lift_ratios(slabs), key=lambda fit: fit.gain)
+    deviation, roots = float(np.sqrt(best.covariance[0, 0])), lift_roots(EFFECTS[name], slabs)
     for size in largest(name) * _LIFTS:
-        gain = explain_lift(EFFECTS[name], [replace(slab, lift=size * slab.travel) for slab in slabs]).gain
+        gain = lift_gain([replace(slab, lift=size * slab.travel) for slab in slabs], roots)
         if gain - SURELY * size / deviation > needed:
             return float(size)
     return None

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import solve_triangular
 from scipy.special import logsumexp
 
 from blockshake.diagnosis.evidence.explanation import Explanation, Fit, mean_evidence
@@ -147,22 +148,38 @@ def _turning(effect, slabs, likelihoods):
 
 def explain_lift(effect, slabs):
     """`Explanation` by an effect that lifts the slab: a random motion of any size, of a base that gives or does not."""
-    logs = np.zeros((2, 1 + len(effect.lifts(slabs[0]))))
+    return Explanation(effect.name, "all", lift_gain(slabs, lift_roots(effect, slabs)), lift_ratios(slabs))
+
+
+def lift_roots(effect, slabs):
+    """Roots of the covariances of the slab's vertical motion, which do not depend on the motion that is read.
+
+    A list by slab, in it one by whether the base gives, in it lower roots: without the effect, then of its motions.
+    """
+    roots = []
     for slab in slabs:
         by = ((_LIFT_BY_FORCE, slab.force), (_LIFT_BY_TURN, slab.turn), (_LIFT_BY_TURN, np.abs(slab.turn)))
         apart = np.abs(slab.time[slab.at][:, None] - slab.time[slab.at])
         pressed = _BOUNCE**2 * np.exp(-apart / _BOUNCE_MEMORY)
         pressed += sum(share**2 * np.outer(one[slab.at], one[slab.at]) for share, one in by)
-        for gives, base in enumerate((_lift_noise(slab), _lift_noise(slab) + pressed)):
-            for size, motion in enumerate((0.0, *effect.lifts(slab))):
-                logs[gives, size] += _log_density(slab.lift[slab.at], base + motion)
+        motions = (0.0, *effect.lifts(slab))
+        bases = _lift_noise(slab), _lift_noise(slab) + pressed
+        roots.append([[np.linalg.cholesky(base + motion) for motion in motions] for base in bases])
+    return roots
+
+
+def lift_gain(slabs, roots):
+    """Logarithm of how many times more probable the vertical motion of slabs is by an effect than without it."""
+    logs = sum(
+        np.array([[_log_density(slab.lift[slab.at], root) for root in of_base] for of_base in of_slab])
+        for slab, of_slab in zip(slabs, roots, strict=True)
+    )
     prior = np.array([0.0, -1.0])[:, None]
     moved = logsumexp(logs[:, 1:] + prior) - np.log(2 * (logs.shape[1] - 1))
-    gain = float(moved - logsumexp(logs[:, :1] + prior))
-    return Explanation(effect.name, "all", gain, _ratios(slabs))
+    return float(moved - logsumexp(logs[:, :1] + prior))
 
 
-def _ratios(slabs):
+def lift_ratios(slabs):
     """`Fit` of the vertical by the horizontal motion, by delay; what is not in proportion is coloured noise."""
     covariances = []
     for slab in slabs:
@@ -196,7 +213,6 @@ def _lift_noise(slab):
     return noise
 
 
-def _log_density(values, covariance):
-    root = np.linalg.cholesky(covariance)
-    whitened = np.linalg.solve(root, values)
+def _log_density(values, root):
+    whitened = solve_triangular(root, values, lower=True, check_finite=False)
     return -0.5 * whitened @ whitened - np.log(np.diag(root)).sum()
