@@ -54,12 +54,26 @@ def test_shapley_effects_of_a_dependent_linear_model_in_closed_form():
     variance = slopes @ correlation @ slopes
     both = slopes[0] * slopes[1] * r
     expected = (slopes**2 * (1.0 - r**2 / 2.0) + both + slopes[::-1] ** 2 * r**2 / 2.0) / variance
-    found = shapley_effects(lambda x: (x @ slopes)[None], correlation, np.random.default_rng(1))[0]
+    (found,), error = shapley_effects(lambda x: (x @ slopes)[None], correlation, np.random.default_rng(1))
     np.testing.assert_allclose(found, expected, atol=0.03)
+    assert (np.abs(found - expected) < 3.0 * error).all()
+    assert (error < 0.02).all()
     x = np.random.default_rng(2).standard_normal((200, 2)) @ np.linalg.cholesky(correlation).T
     by_runs = indices(x, x @ slopes, 1)
     np.testing.assert_allclose(by_runs["shapley"], expected, atol=0.06)
     assert np.isnan(by_runs["total"]).all()  # of dependent inputs they are no shares
+
+
+def test_the_only_variable_that_matters_has_the_whole_variance_within_its_limits():
+    """Truth 1 and 0: the limits count the error of the sampling, and no share is below 0 or above 1."""
+    x = evenly(2, 60)
+    for seed in range(8):
+        found = indices(x, 3.0 * x[:, 0], seed)
+        for name in ("shapley", "first", "total"):
+            assert ((found[name] >= 0.0) & (found[name] <= 1.0)).all()
+        low, high = found["shapley_interval"]
+        assert high[0] == 1.0
+        assert low[1] == 0.0
 
 
 def test_a_bad_surrogate_tells_nothing():

@@ -49,12 +49,13 @@ def answer(content):
         Text(_question(content)),
         Box(_verdict(content, found), _facts(stripes, found, shown, theory)),
         *_synthetic(content),
-        _figure(content, found, shown),
-        _table(stripes, found),
     ]
     best = {name: evidence(ended) for name, ended in found.items()}
+    own_limits = worst_of_each(stripes, best, MOST)
+    # before the figure: the terminal shows what stands there
+    blocks += [Heading("Your limit states", "own-limits"), Items(tuple(own_limits))] if own_limits else []
+    blocks += [_figure(content, found, shown), _table(stripes, found)]
     for title, key, sentences in (
-        ("Your limit states", "own-limits", worst_of_each(stripes, best, MOST)),
         ("Which model to use", "models-apart", _differences(content, apart, tried, theory, found)),
         ("Tests and intensities", "beside", (*_measured(content, found), *_intensities(content))),
         ("Blows between blocks that stand apart", "blows", _blows(found)),

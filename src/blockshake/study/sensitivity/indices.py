@@ -177,16 +177,17 @@ def indices(inputs, output, seed):
     dict of str to float or float64 array
         ``left_out`` and ``held_out``, shares of the variance predicted of runs left out one by one, and of every
         fifth run by the others [1]. ``shapley``, ``first`` and ``total`` (n_inputs,), each with limits of 95 %,
-        ``NAME_interval`` (2, n_inputs), of the surrogate's error and of the sampling; NaN where one of the shares is
-        below `SUFFICES`, the runs are fewer than 20 or the output does not vary. `first` and `total` take the inputs
-        as independent: they are NaN where a rank correlation is beyond that of chance.
+        ``NAME_interval`` (2, n_inputs), of the surrogate's error, and of the Shapley effects of their sampling too;
+        all within 0 and 1, as the truth is. NaN where one of the shares is below `SUFFICES`, the runs are fewer than
+        20 or the output does not vary. `first` and `total` take the inputs as independent: they are NaN where a rank
+        correlation is beyond that of chance.
 
     Notes
     -----
     The surrogate is a Gaussian process with a length for each input, of scikit-learn; its draws make the intervals (Le
     Gratiet, Cannamela and Iooss 2014). Sobol indices are those of `scipy.stats.sobol_indices`; Shapley effects (Owen
     2014) by random orders (Song, Nelson and Staum 2016, algorithm 1), their conditional draws from a Gaussian copula of
-    the ranks. The Shapley effects of all inputs sum to 1 and none is below 0 but by chance.
+    the ranks. The Shapley effects of all inputs sum to 1.
     """
     n_runs, n_inputs = inputs.shape
     names = ("shapley", "first", "total")
@@ -208,7 +209,8 @@ def indices(inputs, output, seed):
     draws = surrogate.draws(generator)
     correlation = np.atleast_2d(np.corrcoef(scores, rowvar=False))
     chance = ndtri(1.0 - 0.025 / max(n_inputs * (n_inputs - 1) / 2, 1)) / np.sqrt(n_runs)
-    made = {"shapley": shapley_effects(draws, correlation, generator)}
+    effects, error = shapley_effects(draws, correlation, generator)
+    made = {"shapley": effects}
     if np.abs(correlation - np.eye(n_inputs)).max() < chance:
         sobol = scipy.stats.sobol_indices(
             func=lambda points: draws(points.T),
@@ -218,9 +220,11 @@ def indices(inputs, output, seed):
         )
         made |= {"first": sobol.first_order, "total": sobol.total_order}
     for name, values in made.items():
-        found[name] = values[0]
-        # the spread of the draws, around the value of the mean
-        found[f"{name}_interval"] = values[0] + np.array([[-1.96], [1.96]]) * values[1:].std(axis=0)
+        # the spread of the draws, around the value of the mean; all draws share the points of the sampling
+        spread = np.hypot(values[1:].std(axis=0), error if name == "shapley" else 0.0)
+        found[name] = np.clip(values[0], 0.0, 1.0)
+        found[f"{name}_interval"] = np.clip(values[0] + np.array([[-1.96], [1.96]]) * spread, 0.0, 1.0)
+    found["shapley"] /= found["shapley"].sum()
     return found
 
 
@@ -237,8 +241,10 @@ def shapley_effects(function, correlation, generator):
 
     Returns
     -------
-    float64 array, shape (n_functions, n_inputs)
+    effects : float64 array, shape (n_functions, n_inputs)
         Shares of the variance [1].
+    error : float64 array, shape (n_inputs,)
+        Standard error of those of the first function by the sampling [1].
     """
     n_inputs = len(correlation)
     root, precision = np.linalg.cholesky(correlation), np.linalg.inv(correlation)
@@ -255,12 +261,14 @@ def shapley_effects(function, correlation, generator):
             mean = -np.linalg.solve(own.T, np.linalg.solve(own, pull))
             at[count - 1][:, inside] = mean + np.linalg.solve(own.T, drawn[count - 1][:, inside].T).T
     values = function(points.reshape(-1, n_inputs)).reshape(-1, _ORDERS, n_inputs - 1, _INNER_POINTS)
-    total = function(generator.standard_normal((4 * _ORDERS, n_inputs)) @ root.T).var(axis=1, ddof=1)
+    apart = function(generator.standard_normal((4 * _ORDERS, n_inputs)) @ root.T)
+    total = apart.var(axis=1, ddof=1)
     left = np.zeros((len(values), _ORDERS, n_inputs + 1))
     left[..., 1:-1], left[..., -1] = values.var(axis=-1, ddof=1), total[:, None]
-    gains = np.diff(left, axis=-1)
-    effects = np.zeros((len(values), n_inputs))
-    for place in range(n_inputs):
-        for one in range(n_inputs):
-            effects[:, one] += gains[:, orders[:, place] == one, place].sum(axis=1)
-    return effects / _ORDERS / total[:, None]
+    # gain of every input, wherever it stands in an order
+    gains = np.take_along_axis(np.diff(left, axis=-1), np.argsort(orders, axis=1)[None], axis=-1)
+    effects = gains.mean(axis=1) / total[:, None]
+    by_orders = gains[0].std(axis=0, ddof=1) / np.sqrt(_ORDERS) / total[0]
+    # the total variance is sampled too, and divides all but what an input gains as the last of an order
+    of_total = ((apart[0] - apart[0].mean()) ** 2).std() / np.sqrt(apart.shape[1]) / total[0]
+    return effects, np.hypot(by_orders, np.abs(effects[0] - 1.0 / n_inputs) * of_total)
