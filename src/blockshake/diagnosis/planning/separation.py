@@ -1,18 +1,21 @@
 """Expected answers: an effect of a size put into the rows of nominal tests, and how surely the decision tells it."""
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.special import ndtr
 
 from blockshake.diagnosis.answer.answer import COARSENING, rank
-from blockshake.diagnosis.answer.explain import Evidence, explain, gather_evidence
+from blockshake.diagnosis.answer.explain import Evidence, Tried, all_tried, explain, likelihoods
 from blockshake.diagnosis.answer.limits import SURELY, from_null, limits_of, usual_column
 from blockshake.diagnosis.answer.places import EVERYWHERE, joined_bodies, place_of
 from blockshake.diagnosis.answer.static_tests import distance, expected_readings
 from blockshake.diagnosis.answer.thresholds import ODDS, Thresholds, by_odds
 from blockshake.diagnosis.evidence.closed_joints import closed_joints
 from blockshake.diagnosis.evidence.explanation import best_of
+from blockshake.diagnosis.evidence.joint_rows import JointRows
+from blockshake.diagnosis.evidence.likelihood import Likelihood
 from blockshake.diagnosis.evidence.slab_motion import slab_motion, slab_turns
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
 from blockshake.effects.registry import EFFECTS
@@ -28,12 +31,10 @@ class NominalCampaign:
 
     def __init__(self, seen):
         self.seen = seen
-        self._evidence = gather_evidence(seen)
+        self._rows, self._known = _rows_of(seen), {}
         self._slabs = [slab_motion(test) for test in seen]
-        # one likelihood holds all that is tried
-        self._usual = self._evidence and replace(self._evidence.usual, kept={})
         self._closed, self._joined = closed_joints(seen), joined_bodies(seen)
-        self.limits = limits_of(self._evidence, self._slabs, self._closed, Thresholds())
+        self.limits = limits_of(self._rows, self._slabs, self._closed, Thresholds())
 
     def chance_seen(self, name, place, size):
         """Chance to see an effect as far from its null value."""
@@ -53,7 +54,11 @@ class NominalCampaign:
             alone = np.sqrt(distance(static, read, {}, {}, {}))
             seen = max(seen, float(ndtr(alone - np.sqrt(2.0 * by_odds(name)))))
         chances = {None: seen}
-        for rival, (odds, deviation, where, values) in self._rivals(name, place, size).items():
+        # no rival depends on the static test
+        key = name, place, size
+        if key not in self._known:
+            self._known[key] = self._rivals(*key)
+        for rival, (odds, deviation, where, values) in self._known[key].items():
             if static:
                 further = distance(static, read, {}, self._reads(rival, where, values), {})
             sure = (odds + 0.5 * further - ODDS) / np.sqrt(max(deviation**2 + further, 1e-12))
@@ -70,22 +75,22 @@ class NominalCampaign:
         """
         if EFFECTS[name].columns is None:
             return self._of_slab(name, size) if EFFECTS[name].turns else {}
-        soft, evidence = name == JOINT_COMPLIANCE.name, self._evidence
-        if evidence is None or (not soft and (name, place) not in evidence.keys):
+        soft, rows = name == JOINT_COMPLIANCE.name, self._rows
+        if rows is None or (not soft and (name, place) not in rows.tried.variants):
             return {}
-        likelihood, variants = self._usual, evidence.tried.variants.get((name, place), [])
+        likelihood, variants = rows.usual, rows.tried.variants.get((name, place), [])
         value = np.zeros_like(likelihood.value)
         if soft and variants:
             nearest = min(variants, key=lambda one: abs(np.log(one[0].values["compliance"] / size)))
             value = likelihood.whiten([columns.rows for columns in nearest])[:, 0]
         elif not soft:
             value = size * usual_column(name, variants, likelihood)[0]
-        explained = explain(replace(likelihood, value=value), evidence.tried)
+        explained = explain(replace(likelihood, value=value), rows.tried)
         closed = {
             joint: one.expected(size * (soft and joint == place)) for joint, one in self._closed.items()
         }
         ranked = {
-            rival.cause: rival for rival in rank(Evidence(evidence.tried, [explained]), closed, self._joined)
+            rival.cause: rival for rival in rank(Evidence(rows.tried, [explained]), closed, self._joined)
         }
         if name not in ranked:
             return {}
@@ -108,6 +113,22 @@ class NominalCampaign:
         return {
             other: (*_odds(own, own - one.gain), EVERYWHERE, _values(one)) for other, one in explained.items()
         }
+
+
+class _Rows(NamedTuple):
+    """Rows of nominal tests, before any cause is tried on them: what `limits_of` takes of an `Evidence`."""
+
+    tried: Tried
+    usual: Likelihood  # the noise model with the largest evidence, which keeps what it computes for one value
+
+
+def _rows_of(seen):
+    """`_Rows` of seen tests; None where no joint turned, slipped or lifted in any test."""
+    tests = [JointRows(test) for test in seen if len(test.rows.value)]
+    if not tests:
+        return None
+    usual = max(likelihoods(tests), key=lambda one: one.log_evidence)
+    return _Rows(all_tried(tests, ()), replace(usual, kept={}))
 
 
 def _odds(factor, apart, prior=0.0):
