@@ -52,6 +52,11 @@ class GroundMotion(Shown):
         """Time of the last row [s]."""
         return float(self.table.breaks[-1])
 
+    @property
+    def first_pitch(self) -> float:
+        """Pitch at the first row, with which a run starts [rad]."""
+        return float(self.table.coefficients[0, PITCH, 0])
+
     def scaled(self, factor: float) -> "GroundMotion":
         """The same motion with every column multiplied by ``factor``; the attribute ``scale`` gathers it."""
         table = MotionTable(self.table.breaks, self.table.coefficients * factor)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.dynamics.motion import PITCH
-from blockshake.geometry.rotations import rotation_rows, turned
+from blockshake.geometry.rotations import rotate_into, rotation_matrices, rotation_rows, turned
 from blockshake.geometry.structure_file import signed_axis
 from blockshake.geometry.vectors import columns_product, dot
 from blockshake.jit import kernel_without_allocation
@@ -117,8 +117,12 @@ class Trajectory(Rows):
     numerics: dict  # str to float; figures of the computation: steps, residuals, iterations and the like
 
 
-def assemble_bodies(structure):
-    """Bodies, their state at the start and their stoppers, None without any, from a structure."""
+def assemble_bodies(structure, motion=None):
+    """Bodies, their state at the start and their stoppers, None without any, from a structure.
+
+    Where the pitch of a ``motion`` does not begin at 0, the table starts turned about its mass centre, and all that the
+    structure file has, velocities too, is turned with it.
+    """
     free = ~structure.driven
     inverse_mass = np.where(free, 1.0 / structure.mass, 0.0)
     inverse_inertia = np.linalg.inv(structure.inertia) * free[:, None, None]
@@ -138,7 +142,20 @@ def assemble_bodies(structure):
         structure.velocity.copy(),
         structure.angular_velocity.copy(),
     )
+    if motion is not None and motion.first_pitch != 0.0 and structure.driven.any():
+        _turn_with_table(motion.first_pitch, structure.position[np.argmax(structure.driven)], state)
     return bodies, state, _assemble_stoppers(structure)
+
+
+def _turn_with_table(pitch, centre, state):
+    """Turn a state by a pitch [rad] about a point (3,) [m], in place."""
+    turn = np.array([0.0, pitch, 0.0])
+    rotation = rotation_matrices(turned(1.0, 0.0, 0.0, 0.0, *turn))
+    state.position[:] = centre + (state.position - centre) @ rotation.T
+    for vectors in (state.velocity, state.angular_velocity):
+        vectors[:] = vectors @ rotation.T
+    for orientation in state.orientation:
+        rotate_into(orientation, turn, orientation)
 
 
 def _assemble_stoppers(structure):

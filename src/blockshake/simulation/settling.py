@@ -34,11 +34,13 @@ def settling(structure, position, orientation):
     watched, _ = collapse_limits(structure)
     watched &= ~structure.velocity.any(axis=1) & ~structure.angular_velocity.any(axis=1)
     base, worst, words = int(np.argmax(structure.driven)), _LEAST, ""
-    lift = position[base] - structure.position[base]
     before, now = rotation_matrices(structure.orientation), rotation_matrices(orientation)
+    carried = now[base] @ before[base].T
+    place = position[base] + (structure.position - structure.position[base]) @ carried.T
+    before = carried @ before
     for body in np.flatnonzero(watched):
         vertices = structure.solid(body).vertices
-        moved = position[body] - lift - structure.position[body] + vertices @ (now[body] - before[body]).T
+        moved = position[body] - place[body] + vertices @ (now[body] - before[body]).T
         share = np.linalg.norm(moved, axis=1).max() / np.ptp(vertices, axis=0).max()
         if share > worst:
             tilt = np.degrees(np.arccos(np.clip(now[body, 2] @ before[body, 2], -1.0, 1.0)))

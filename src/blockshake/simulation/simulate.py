@@ -13,13 +13,11 @@ import xarray as xr
 import blockshake
 from blockshake.dynamics.baseline import check_window
 from blockshake.dynamics.load_motion import MotionSource, load_motion, plain_attributes, provenance
-from blockshake.dynamics.motion import PITCH, GroundMotion, ground_motion
+from blockshake.dynamics.motion import GroundMotion, ground_motion
 from blockshake.dynamics.system import FINISHED, Status
 from blockshake.errors import Argument, InputError
 from blockshake.files import AnyPath, history
-from blockshake.geometry.overlap import depths_of_pairs
-from blockshake.geometry.rotations import rotate_into
-from blockshake.geometry.structure import START_TOLERANCE, Structure, StructureSource, load_structure
+from blockshake.geometry.structure import Structure, StructureSource, load_structure
 from blockshake.measurement.sensors.accelerometers import FINE_RATE
 from blockshake.measurement.sensors.markers import RATE
 from blockshake.simulation.falling import still_falling
@@ -264,22 +262,14 @@ def _set_up(
 
 
 def _check_start(structure, motion):
-    """Refuse a first pitch that pushes the driven body into what stands on it."""
-    pitch = float(motion.table.coefficients[0, PITCH, 0])
-    if pitch == 0.0:
-        return
-    orientation = structure.orientation.copy()
-    turned = np.array([0.0, pitch, 0.0])
-    for driven in np.flatnonzero(structure.driven):
-        rotate_into(structure.orientation[driven], turned, orientation[driven])
-    pairs = np.argwhere(structure.driven[:, None] & ~structure.driven)
-    shapes = [body.shape for body in structure.file.bodies]
-    depths = depths_of_pairs(pairs, shapes, structure.solids, structure.centroid, orientation)
-    for pair in np.flatnonzero(depths > START_TOLERANCE)[:1]:
-        name = structure.body_names[pairs[pair, 1]]
-        raise InputError(
-            motion.name, "pitch_y", f"its first value pushes the slab {1e3 * depths[pair]:.2g} mm into {name}"
+    """Refuse a pitch that does not begin at 0 where no common turn of the table and all that stands on it is meant."""
+    driven = np.flatnonzero(structure.driven)
+    if motion.first_pitch != 0.0 and len(driven) > 1:
+        first, second, *_ = (structure.body_names[body] for body in driven)
+        wrong = (
+            f"expected a pitch that begins at 0, as {first} and {second} turn each about its own mass centre"
         )
+        raise InputError(motion.name, "pitch_y", wrong)
 
 
 def compile_kernels(model):

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from blockshake.dynamics.system import State
 from blockshake.geometry.rotations import rotation_rows
 from blockshake.geometry.schema import AXES, CREEP
 from blockshake.geometry.vectors import (
@@ -21,11 +22,13 @@ from blockshake.jit import inner_kernel
 class ExternalForces(NamedTuple):
     """Forces along fixed axes, one an entry.
 
-    ``body`` int64 (n,); ``base``: first driven body, -1 without one; ``point`` (n, 3) from the mass centre, body frame
-    [m]; ``axis`` (n, 3) unit vectors, world frame; ``amplitude`` (n,) [N]; ``start``, ``end`` (n,) [s];
-    ``stiffness`` (n,) [N/m]; ``damping`` (n,) [N s/m]; ``drag`` (n,) [N].
+    ``given`` (State): where the run starts; ``body`` int64 (n,); ``base``: first driven body, -1 without one;
+    ``point`` (n, 3) from the mass centre, body frame [m]; ``axis`` (n, 3) unit vectors, world frame;
+    ``amplitude`` (n,) [N]; ``start``, ``end`` (n,) [s]; ``stiffness`` (n,) [N/m]; ``damping`` (n,) [N s/m];
+    ``drag`` (n,) [N].
     """
 
+    given: State
     body: np.ndarray
     base: int
     point: np.ndarray
@@ -38,13 +41,17 @@ class ExternalForces(NamedTuple):
     drag: np.ndarray
 
 
-def assemble_external_forces(structure):
-    """External forces of a structure, bodies in the order of its file; None without any, and no kernel has them."""
+def assemble_external_forces(structure, given):
+    """External forces of a structure, bodies in the order of its file; None without any, and no kernel has them.
+
+    ``given`` (State): where the run starts, from `assemble_bodies`.
+    """
     forces = structure.file.external_forces
     if not forces:
         return None
     driven = np.flatnonzero(structure.driven)
     return ExternalForces(
+        State(*(part.copy() for part in given)),
         structure.carriers(forces),
         int(driven[0]) if len(driven) else -1,
         structure.arms(forces),
@@ -57,7 +64,7 @@ def assemble_external_forces(structure):
 
 
 @inner_kernel
-def external_wrenches_into(bodies, forces, state, time, ahead, wrench):
+def external_wrenches_into(forces, state, time, ahead, wrench):
     """External forces on all bodies, with their moments about the mass centres.
 
     ``time``: when the forces are requested, ``ahead`` of the state, over which every point keeps its velocity [s].
@@ -70,17 +77,18 @@ def external_wrenches_into(bodies, forces, state, time, ahead, wrench):
     tanh(v / 0.01 m/s): dry friction, made smooth at rest.
     """
     wrench[:] = 0.0
+    given = forces.given
     for force in range(forces.body.size):
         body, point, axis = forces.body[force], forces.point[force], forces.axis[force]
-        home = rows_product(rotation_rows(bodies.home_orientation[body]), point)
+        home = rows_product(rotation_rows(given.orientation[body]), point)
         arm = rows_product(rotation_rows(state.orientation[body]), point)
         rate = cross(state.angular_velocity[body], arm)
         moved, speed = 0.0, 0.0
         for i in range(3):
-            moved += axis[i] * (state.position[body, i] + arm[i] - bodies.home[body, i] - home[i])
+            moved += axis[i] * (state.position[body, i] + arm[i] - given.position[body, i] - home[i])
             speed += axis[i] * (state.velocity[body, i] + rate[i])
             if forces.base >= 0:
-                moved -= axis[i] * (state.position[forces.base, i] - bodies.home[forces.base, i])
+                moved -= axis[i] * (state.position[forces.base, i] - given.position[forces.base, i])
                 speed -= axis[i] * state.velocity[forces.base, i]
         size = -forces.stiffness[force] * (moved + ahead * speed) - forces.damping[force] * speed
         size -= forces.drag[force] * np.tanh(speed / CREEP)
@@ -97,7 +105,7 @@ def external_impulses_into(bodies, forces, state, time, dt, impulse):
     """
     if forces is None:
         return
-    external_wrenches_into(bodies, forces, state, time, 0.5 * dt, impulse)
+    external_wrenches_into(forces, state, time, 0.5 * dt, impulse)
     for body in range(bodies.mass.size):
         for axis in range(6):
             impulse[body, axis] *= dt

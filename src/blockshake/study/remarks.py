@@ -207,9 +207,13 @@ def motion_remarks(motion):
     shift = motion.evaluate(motion.table.breaks) - motion.evaluate(motion.table.breaks[:1])
     moved, pitched = float(np.abs(shift[:, :PITCH]).max()), float(np.abs(shift[:, PITCH]).max())
     strength = f"the peak acceleration is {peak / _ONE_G:.2g} g"
-    if peak == 0.0 and pitched == 0.0:
+    if motion.first_pitch != 0.0:
+        remarks.append(
+            f"the table starts turned by {motion.first_pitch:.2g} rad, and all that stands on it with it"
+        )
+    elif peak == 0.0 and pitched == 0.0:
         remarks.append("nothing moves")
-    elif 0.0 < peak < _WEAKEST:
+    if 0.0 < peak < _WEAKEST:
         meant = "expected m/s2, not g" if motion.kind == "acceleration" else "it moves no block"
         remarks.append(f"{strength}: {meant}")
     if peak > _STRONGEST:

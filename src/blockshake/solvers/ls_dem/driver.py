@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.dynamics.collapse import collapse_limits
-from blockshake.dynamics.motion import PITCH, MotionTable, rest_table
-from blockshake.dynamics.system import Bodies, Stoppers, Trajectory, assemble_bodies, place_driven_into
+from blockshake.dynamics.motion import MotionTable, rest_table
+from blockshake.dynamics.system import Bodies, Stoppers, Trajectory, assemble_bodies
 from blockshake.solvers.checkpoint import Checkpoint, run_key
 from blockshake.solvers.external_forces import ExternalForces, assemble_external_forces
 from blockshake.solvers.ls_dem.contact.candidates import Candidates
@@ -86,7 +86,7 @@ def simulate_ls_dem(
         See `run_in_pieces`.
     """
     record_times = np.asarray(record_times, dtype=float)
-    bodies, state, stoppers = assemble_bodies(structure)
+    bodies, state, stoppers = assemble_bodies(structure, motion)
     if rotations_blocked:
         bodies = bodies._replace(inverse_inertia=np.zeros_like(bodies.inverse_inertia))
     n_steps = int(np.ceil(record_times[-1] / time_step - 1e-9))
@@ -95,7 +95,7 @@ def simulate_ls_dem(
         assemble_surfaces(structure, parameters),
         assemble_interfaces(structure, parameters),
         stoppers,
-        assemble_external_forces(structure),
+        assemble_external_forces(structure, state),
         rest_table() if motion is None else motion.table,
         *collapse_limits(structure),
         parameters.skin,
@@ -104,10 +104,6 @@ def simulate_ls_dem(
     )
 
     def start():
-        # the stack settles on the slab as the motion starts, pitch included
-        at_start = np.zeros(4)
-        at_start[PITCH] = assembly.table.coefficients[0, PITCH, 0]
-        place_driven_into(bodies, at_start, np.zeros(4), state)
         candidates, joints, started = settled_start(structure, assembly, state)
         return start_progress(bodies, state, started), candidates, joints
 

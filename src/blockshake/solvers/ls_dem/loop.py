@@ -136,7 +136,7 @@ def _advance(assembly, times, pause, progress, candidates, record, searched, gro
         contact_forces_into(candidates, surfaces, interfaces, poses, dt if step > 0 else 0.0, loads)
         keep_poses(poses)
         loads.energy[SPRING_ENERGY] += stopper_forces_into(bodies, stoppers, state, loads)
-        external_loads_into(bodies, forces, state, t, external, loads)
+        external_loads_into(forces, state, t, external, loads)
         _account_into(bodies, loads, now, progress)
 
         # momenta go from t - dt/2 to t + dt/2; at t itself they are the state that is recorded
@@ -272,11 +272,11 @@ def stopper_forces_into(bodies, stoppers, state, loads):
 
 
 @inner_kernel
-def external_loads_into(bodies, forces, state, time, external, loads):
+def external_loads_into(forces, state, time, external, loads):
     """Add external forces, if any, to ``loads``; ``external`` (n_bodies, 6) is then overwritten."""
     if forces is None:
         return
-    external_wrenches_into(bodies, forces, state, time, 0.0, external)
+    external_wrenches_into(forces, state, time, 0.0, external)
     for body in range(external.shape[0]):
         for axis in range(3):
             loads.force[body, axis] += external[body, axis]

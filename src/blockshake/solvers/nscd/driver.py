@@ -80,8 +80,8 @@ def simulate_nscd(structure, motion, parameters, record_times, time_step=1e-3, c
     """
     times = np.ascontiguousarray(record_times, dtype=float)
     order = order_of_bodies(structure)
-    bodies, given, stoppers = assemble_bodies(structure)
-    scene = assemble_scene(structure, bodies, stoppers, motion, parameters, time_step, order)
+    bodies, given, stoppers = assemble_bodies(structure, motion)
+    scene = assemble_scene(structure, bodies, given, stoppers, motion, parameters, time_step, order)
 
     def start():
         touching = structure.touching[np.ix_(order, order)]

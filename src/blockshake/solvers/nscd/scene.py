@@ -62,11 +62,11 @@ def reordered(part, order):
     return type(part)(*(values if values is None else np.ascontiguousarray(values[order]) for values in part))
 
 
-def assemble_scene(structure, bodies, stoppers, motion, parameters, time_step, order):
+def assemble_scene(structure, bodies, given, stoppers, motion, parameters, time_step, order):
     """Scene of a structure under a motion; ``order`` int64 (n_bodies,) is that of `order_of_bodies`.
 
-    ``bodies`` and ``stoppers`` are those of `assemble_bodies`, in the order of the file; ``motion`` is None for a
-    ground at rest; ``parameters`` (NscdParameters); ``time_step`` [s].
+    ``bodies``, ``given`` (State) and ``stoppers`` are those of `assemble_bodies`, in the order of the file; ``motion``
+    is None for a ground at rest; ``parameters`` (NscdParameters); ``time_step`` [s].
 
     Raises
     ------
@@ -75,14 +75,15 @@ def assemble_scene(structure, bodies, stoppers, motion, parameters, time_step, o
     """
     rank = np.argsort(order)
     table = rest_table() if motion is None else motion.table
-    driven, forces = np.flatnonzero(structure.driven), assemble_external_forces(structure)
+    driven, forces = np.flatnonzero(structure.driven), assemble_external_forces(structure, given)
     base = int(rank[driven[0]]) if len(driven) else -1
     supported, drop_limit = collapse_limits(structure)
     return ContactScene(
         bodies=reordered(bodies._replace(gravity=None), order)._replace(gravity=bodies.gravity),
         friction=ordered_friction(structure, order),
         stoppers=stoppers and stoppers._replace(body=rank[stoppers.body]),
-        forces=forces and forces._replace(body=rank[forces.body], base=base),
+        forces=forces
+        and forces._replace(body=rank[forces.body], base=base, given=reordered(forces.given, order)),
         layers=np.ascontiguousarray(joint_compliance(structure)[np.ix_(order, order)]),
         polyhedra=pack_polyhedra(structure, order),
         table=MotionTable(*(np.ascontiguousarray(part) for part in table)),

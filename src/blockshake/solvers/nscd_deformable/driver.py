@@ -36,7 +36,7 @@ class DeformableScene(NamedTuple):
     part: ElasticResponse
 
 
-def assemble_model(structure, bodies, stoppers, motion, parameters, time_step, order, viscous):
+def assemble_model(structure, bodies, given, stoppers, motion, parameters, time_step, order, viscous):
     """Model of a structure under a motion; arguments as of `assemble_scene` and `simulate_deformable`."""
     rigid = NscdParameters(**parameters.model_dump(include=set(StepParameters.model_fields)))
     elastic = pack_elastic(structure, order, parameters, viscous)
@@ -45,7 +45,7 @@ def assemble_model(structure, bodies, stoppers, motion, parameters, time_step, o
         for parts in (1, parameters.impact_parts)
     )
     return DeformableScene(
-        scene=assemble_scene(structure, bodies, stoppers, motion, rigid, time_step, order),
+        scene=assemble_scene(structure, bodies, given, stoppers, motion, rigid, time_step, order),
         elastic=elastic,
         spacing=parameters.contact_spacing,
         whole=whole,
@@ -86,8 +86,8 @@ def simulate_deformable(
     """
     times = np.ascontiguousarray(record_times, dtype=float)
     order = order_of_bodies(structure)
-    bodies, given, stoppers = assemble_bodies(structure)
-    model = assemble_model(structure, bodies, stoppers, motion, parameters, time_step, order, viscous)
+    bodies, given, stoppers = assemble_bodies(structure, motion)
+    model = assemble_model(structure, bodies, given, stoppers, motion, parameters, time_step, order, viscous)
 
     def start():
         touching = structure.touching[np.ix_(order, order)]
