@@ -225,10 +225,24 @@ def on_one_clock(test, structure):
     return test.assign_coords(time_acc=late).assign_attrs(recorder_late=float(lag))
 
 
-def _best_lag(moved, felt, apart):
-    """Lag of the recorder's clock [s], the correlation there, and the largest one within 0.1 s."""
-    fewest = int(SHORTEST * _RATE)
-    products = np.abs(scipy.signal.correlate(felt, moved, mode="full"))
+def correlations_by_lag(moved, felt, apart, rate=_RATE):
+    """Correlation of two records at every lag that leaves 3 s of both.
+
+    Parameters
+    ----------
+    moved, felt : float64 arrays, shape (n_moved,) and (n_felt,)
+        Acceleration of the slab by its markers, and as the recorder has it, both in `BAND`; of any size.
+    apart : float
+        First time of ``moved`` less that of ``felt`` [s].
+    rate : float
+        Sampling rate of both records [Hz].
+
+    Returns
+    -------
+    lags, correlation : float64 arrays, shape (n_lags,)
+        By how much the recorder's times are too late [s]; correlation then, -1 to 1, and 0 at lags that leave less.
+    """
+    products = scipy.signal.correlate(felt, moved, mode="full")
     ones = (
         scipy.signal.correlate(felt**2, np.ones(len(moved)), mode="full"),
         scipy.signal.correlate(np.ones(len(felt)), moved**2, mode="full"),
@@ -237,8 +251,14 @@ def _best_lag(moved, felt, apart):
     size = np.sqrt(np.maximum(ones[0] * ones[1], np.finfo(float).tiny))
     # a few strong cycles may lie within a short overlap: the energy outside of it counts as unexplained
     size = np.maximum(size, 0.5 * np.sqrt((felt @ felt) * (moved @ moved)))
-    correlation = np.where(np.rint(both) >= fewest, products / size, 0.0)
-    lags = (np.arange(len(products)) - (len(moved) - 1)) / _RATE - apart
+    correlation = np.where(np.rint(both) >= int(SHORTEST * rate), products / size, 0.0)
+    return (np.arange(len(products)) - (len(moved) - 1)) / rate - apart, correlation
+
+
+def _best_lag(moved, felt, apart):
+    """Lag of the recorder's clock [s], the correlation there in size, and the largest one within 0.1 s."""
+    lags, correlation = correlations_by_lag(moved, felt, apart)
+    correlation = np.abs(correlation)
     best = int(correlation.argmax())
     near = correlation[np.abs(lags) <= _NEAR].max(initial=0.0)
     return lags[best], float(correlation[best]), float(near)

@@ -3,13 +3,15 @@
 import numpy as np
 
 from blockshake.errors import InputError
-from blockshake.measurement.campaigns.clocks import BAND, RELATED, SHORTEST, in_band
+from blockshake.measurement.campaigns.clocks import BAND, RELATED, SHORTEST, correlations_by_lag, in_band
 from blockshake.measurement.sensors.accelerometers import EVEN
 
 _END = 0.5  # s at both ends, where the filter is not yet itself
 _GAPS = 0.05  # of the readings, which may be lost
 _SEEN = 5.0  # times its noise, that the acceleration of the markers must have
-_LARGEST_LAG = 0.05  # s searched: less than half a period of 8 Hz, so that a sine's sign is never in doubt
+_AS_GOOD = (
+    0.01  # of correlation, by which another lag may fall short: two standard errors in noise of a fifth
+)
 _LAG = 0.01  # s without a word; the campaigns of data/ are found within 0.0012 s
 _GAIN = (0.8, 1.25)  # accelerometer over marker, without a word; those of data/ are within 0.97 to 1.01
 _IN_G = (0.5, 2.0)  # the same of readings in g
@@ -21,7 +23,7 @@ _FEWEST = 20  # readings
 _SIDEWAYS = 3.0  # times the motion along z, that blocks shaken along x do not move along y
 
 
-def clock_remarks(time, marker, time_acc, acceleration, noise, path):
+def clock_remarks(time, marker, time_acc, acceleration, noise, path, moved=False):
     """Remarks on the slab's accelerometer along x against the slab's markers: clock, sign and size.
 
     Parameters
@@ -34,6 +36,8 @@ def clock_remarks(time, marker, time_acc, acceleration, noise, path):
         Standard deviation of ``marker`` [m].
     path : path
         File that is named in an error.
+    moved : bool
+        Whether `on_one_clock` has moved ``time_acc`` already.
 
     Raises
     ------
@@ -42,45 +46,91 @@ def clock_remarks(time, marker, time_acc, acceleration, noise, path):
 
     Notes
     -----
-    Both are seen in 1 to 8 Hz, where the second difference of 0.1 mm of noise is 0.03 m/s2; lags up to 50 ms are
-    tried by steps of a reading, and a parabola through the best gives the rest.
+    Both are seen in 1 to 8 Hz, where the second difference of 0.1 mm of noise is 0.03 m/s2, at all lags that leave 3 s
+    of both, by steps of a marker's reading; a parabola through the best gives the rest. A lag of at most 10 ms is taken
+    where no other one is better by more than 0.01 of correlation.
     """
     if _unfit(time, marker) or _unfit(time_acc, acceleration):
         return []
-    begin = max(time[0], time_acc[0]) + _END + _LARGEST_LAG
-    end = min(time[-1], time_acc[-1]) - _END - _LARGEST_LAG
-    inside = (time >= begin) & (time <= end)
-    if end - begin < SHORTEST:
-        return []
     step = np.median(np.diff(time))
-    moved = np.gradient(np.gradient(_band(time, marker), time), time)[inside]
-    unseen = noise * (2.0 * np.pi) ** 2 * np.sqrt((BAND[1] ** 5 - BAND[0] ** 5) / 5.0 * 2.0 * step)
-    if np.sqrt(np.mean(moved**2)) < _SEEN * unseen or not moved.any():
-        return []
+    felt_at = np.arange(time_acc[0], time_acc[-1], step)
+    inside = (time >= time[0] + _END) & (time <= time[-1] - _END)
+    felt_inside = (felt_at >= felt_at[0] + _END) & (felt_at <= felt_at[-1] - _END)
+    slab = np.gradient(np.gradient(_band(time, marker), step), step)[inside]
     read = _band(time_acc, acceleration)
-    lags = step * np.arange(-int(_LARGEST_LAG / step), int(_LARGEST_LAG / step) + 1)
-    shifted = [np.interp(time[inside] - lag, time_acc, read) for lag in lags]
-    correlation = np.array([_correlation(moved, values) for values in shifted])
-    best = int(np.abs(correlation).argmax())
-    if abs(correlation[best]) < RELATED:
+    felt = np.interp(felt_at, time_acc, read)[felt_inside]
+    unseen = noise * (2.0 * np.pi) ** 2 * np.sqrt((BAND[1] ** 5 - BAND[0] ** 5) / 5.0 * 2.0 * step)
+    if (
+        min(len(slab), len(felt)) * step < SHORTEST
+        or np.sqrt(np.mean(slab**2)) < _SEEN * unseen
+        or not slab.any()
+    ):
+        return []
+    lags, correlation = correlations_by_lag(slab, felt, time[inside][0] - felt_at[felt_inside][0], 1.0 / step)
+    peaks = _summits(lags, correlation)
+    best = max(peaks, key=lambda peak: abs(peak[1]), default=(0.0, 0.0))
+    if abs(best[1]) < RELATED:
+        tried = lags[correlation != 0.0]
         return [
-            f"the slab's accelerometer along x does not read what its markers do (correlation {correlation[best]:.2f})"
+            "the slab's accelerometer along x does not read what its markers do at any lag of its clock from "
+            f"{tried.min(initial=0.0):.3g} to {tried.max(initial=0.0):.3g} s (correlation at most {abs(best[1]):.2f})"
         ]
-    gain = float(moved @ shifted[best] / (moved @ moved))
+    good = [peak for peak in peaks if abs(peak[1]) > abs(best[1]) - _AS_GOOD]
+    at_once = [peak for peak in good if abs(peak[0]) <= _LAG and peak[1] > 0.0]
+    lag, _ = best = at_once[0] if at_once else best
+    both = (time_acc - lag >= time[inside][0]) & (time_acc - lag <= time[inside][-1])
+    shaken = np.interp(time_acc[both] - lag, time[inside], slab)
+    gain = float(shaken @ read[both] / (shaken @ shaken))
     if _IN_G[0] < abs(gain) * _GRAVITY < _IN_G[1]:
         raise InputError(
             path, "accelerometer",
             f"expected m/s2; the slab's reads {gain:.3g} of what its markers do: it looks like g, or the markers have "
             "another unit",
         )  # fmt: skip
+    others = [peak for peak in good if peak is not best]
+    doubt = f"; {_other_lags(best, others)}" if others else ""
     remarks = []
     if not _GAIN[0] < gain < _GAIN[1]:
-        remarks.append(f"the slab's accelerometer along x reads {gain:.3g} of what its markers do")
-    lag = lags[best] + step * _parabola(np.abs(correlation), best)
+        unsure = doubt if gain < 0.0 and abs(lag) <= _LAG else ""
+        remarks.append(f"the slab's accelerometer along x reads {gain:.3g} of what its markers do{unsure}")
     if abs(lag) > _LAG:
-        late = "behind" if lag > 0.0 else "ahead of"
-        remarks.append(f"the markers' clock is {1e3 * abs(lag):.3g} ms {late} the accelerometers'")
+        change = f"subtract {_seconds(lag)} from" if lag > 0.0 else f"add {_seconds(-lag)} to"
+        remarks.append(
+            f"{change} the accelerometers' times, by which the slab's accelerometer reads what its markers do "
+            f"(correlation {abs(best[1]):.2f}){doubt}"
+        )
+    elif moved and others:
+        remarks.append(
+            f"the accelerometers' clock may be wrong by cycles of the shaking: {_other_lags(best, others)}"
+        )
     return remarks
+
+
+def _summits(lags, correlation):
+    """Lag [s] and correlation of every summit in size, and of no end, finer than the lags by a parabola."""
+    size = np.abs(correlation)
+    rows = 1 + np.flatnonzero(
+        (size[1:-1] >= size[:-2]) & (size[1:-1] > size[2:]) & (size[:-2] > 0.0) & (size[2:] > 0.0)
+    )
+    found = []
+    for row in rows:
+        before, here, after = correlation[row - 1 : row + 2]
+        place = 0.5 * (before - after) / (before - 2.0 * here + after)
+        found.append((lags[row] + place * (lags[1] - lags[0]), here - 0.25 * (before - after) * place))
+    return found
+
+
+def _other_lags(best, others):
+    """Words on other lags that are about as good, (lag, correlation) each."""
+    near = min(others, key=lambda peak: abs(peak[0] - best[0]))
+    sign = ", with the sign reversed" if near[1] * best[1] < 0.0 else ""
+    count = f"{len(others)} other lags are" if len(others) > 1 else "another lag is"
+    return f"{count} about as good, the nearest {_seconds(abs(near[0] - best[0]))} from it{sign}"
+
+
+def _seconds(size):
+    """A time of at most a minute in words, to a tenth of a millisecond."""
+    return f"{1e3 * size:.3g} ms" if size < 1.0 else f"{size:.4g} s"
 
 
 def carried_remarks(time, readings, names, slab, noise):
@@ -144,16 +194,3 @@ def _unfit(time, values):
 def _band(time, values):
     known = np.isfinite(values)
     return in_band(np.interp(time, time[known], values[known]), 1.0 / np.median(np.diff(time)))
-
-
-def _correlation(first, second):
-    size = np.sqrt((first @ first) * (second @ second))
-    return first @ second / size if size > 0.0 else 0.0
-
-
-def _parabola(values, best):
-    """Place of the summit next to the best value, in steps; 0 at an end."""
-    if not 0 < best < len(values) - 1:
-        return 0.0
-    before, here, after = values[best - 1 : best + 2]
-    return 0.5 * (before - after) / (before - 2.0 * here + after)

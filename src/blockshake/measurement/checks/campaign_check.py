@@ -243,18 +243,20 @@ class _Described:
             self.time, self.readings[:, ~self.on_slab], names, self.slab, self.sensors.marker_noise
         )
         self.remarks += exchange_remarks(self.test, self.structure, self.sensors, self.target)
-        if "recorder_late" in self.test.attrs:
-            late = self.test.attrs["recorder_late"]
-            words = "late" if late > 0.0 else "early"
+        late = self.test.attrs.get("recorder_late")
+        if late is not None:
+            change = "subtracted from" if late > 0.0 else "added to"
             self.remarks.append(
-                f"the accelerometers' clock is {abs(late):.3g} s {words} and was set by the slab's motion"
+                f"{abs(late):.3g} s were {change} the accelerometers' times, by the slab's motion"
             )
         channels = shaken_channels(self.test, self.structure)
         if channels:
             readings = self.test["accelerometer"].to_numpy()
             readings = readings[:, np.isin(self.test["channel"], channels)].mean(axis=1)
             time_acc, slab = self.test["time_acc"].to_numpy(), self.slab[:, 0]
-            self.remarks += clock_remarks(self.time, slab, time_acc, readings, self.slab_noise, self.path)
+            self.remarks += clock_remarks(
+                self.time, slab, time_acc, readings, self.slab_noise, self.path, late is not None
+            )
 
 
 def multiples(columns, readings):
