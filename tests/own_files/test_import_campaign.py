@@ -254,6 +254,33 @@ def test_rows_that_the_clock_lacks_become_gaps(tmp_path):
     assert read.isnull().all("marker").values.nonzero()[0].tolist() == list(range(200, 230))
 
 
+def _ramp(rows):
+    """The block moves by 20 mm/s from 2 s on; one reading at 0.2 s is off by 30 mm, as a knock of the wire makes it."""
+    for step in range(len(rows)):
+        rows[step][2] = f"{57.3 + max(0.0, 0.2 * (step - 200)) + 30.0 * (step == 20):.1f}".replace(".", ",")
+    return rows
+
+
+def test_a_rest_in_which_a_sensor_moves_is_refused_with_the_time_of_the_motion(tmp_path, capsys):
+    """The ramp is 3 x 0.1 mm, thrice the stated noise, at 2.015 s; the next reading is at 2.02 s."""
+    source = _transducers(tmp_path / "v1.csv", _ramp)
+    asked = [*OPTIONS, *COLUMNS, "--output", str(tmp_path / "c")]
+    assert main(["import-campaign", source, *asked, "--rest", "5"]) == 2
+    said = capsys.readouterr().err
+    assert "--rest: " in said
+    assert said.count("\n") == 1
+    assert said.endswith(
+        "v1.csv: block-1-face.x: expected rest in the first 5 s, of which it rests for 2.02 s: "
+        "it moves from 2.02 s on\n"
+    )
+    assert not (tmp_path / "c").exists()
+    assert main(["import-campaign", source, *asked, "--rest", "2"]) == 0
+    read = load_test(load_campaign(tmp_path / "c"), "v1")["marker_displacement"]
+    off = 0.03 / 201  # m, of the mean of 201 readings, by the knock
+    end = read.sel(marker="block-1-face", axis="x").values[-1]
+    assert end == pytest.approx(0.2e-3 * 1099 - off, abs=1e-9)
+
+
 def test_a_map_may_turn_a_transducer_round(tmp_path, capsys):
     _transducers(tmp_path / "v1.csv", _set(700, 2, "58,3"))
     (tmp_path / "map.yaml").write_text("""

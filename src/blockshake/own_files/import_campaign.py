@@ -214,7 +214,8 @@ def _read_readings(test, import_map, structure, where):
         lost += _dropped_lines(sensors, dropped, time_acc)
         if kind == "displacement":
             for column, key in zip(read.T, sensors, strict=True):
-                column -= rest_of(time_acc, column, import_map, where, f"{source}: {key}")
+                noise = import_map.sensors.transducer_noise
+                column -= rest_of(time_acc, column, import_map, where, f"{source}: {key}", noise)
         known = np.isfinite(read).any(axis=0)
         if known.any():
             variables[variable] = (("time_acc", dimension), read[:, known], {"units": unit})
@@ -257,7 +258,9 @@ def _displacements(test, keys, posed, import_map, where):
         starts.setdefault(name, np.full((FIRST_READINGS, len(AXES)), np.nan))[
             : len(time), AXES.index(axis)
         ] = column[:FIRST_READINGS]
-        values[:, AXES.index(axis)] = column - rest_of(time, column, import_map, where, f"{source}: {key}")
+        noise = import_map.sensors.marker_noise
+        rest = rest_of(time, column, import_map, where, f"{source}: {key}", noise)
+        values[:, AXES.index(axis)] = column - rest
     return (
         time,
         found,

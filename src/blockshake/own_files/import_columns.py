@@ -4,15 +4,21 @@ import contextlib
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 
 from blockshake.dynamics.records.times import check_increase
 from blockshake.errors import InputError
 from blockshake.measurement.campaigns.clocks import LACKING, missing_rows
 from blockshake.measurement.campaigns.faulty_readings import stuck
+from blockshake.measurement.checks.quiet_noise import NORMAL
 from blockshake.tables.table_file import TableLayout, read_table
 from blockshake.tables.units import unit_size
 
 _SAME_TIME = 0.01  # of a step, within which two times are one
+_FIRST = 0.5  # s at most of the rest, whose readings tell where a sensor starts, and its noise
+_IN_A_ROW = 5  # readings, whose median no single outlier moves
+# times the noise of a reading: within the first all are at rest, beyond the second one moves
+_AT_REST, _MOVES = 3.0, 10.0
 
 
 class TimedColumns(NamedTuple):
@@ -170,13 +176,33 @@ def _clock(table, entry, place, import_map, where):
     return time
 
 
-def rest_of(time, column, import_map, where, name):
-    """Mean reading of the quiet start; zero of a column without readings, which the check of a test finds so."""
+def rest_of(time, column, import_map, where, name, noise):
+    """Mean reading of the quiet start; zero of a column without readings, which the check of a test finds so.
+
+    ``noise``: stated standard deviation of a reading [m]. A column that moves within the stated rest is refused.
+    """
     if import_map.rest == 0.0 or np.isnan(column).all() or stuck(column):
         return 0.0
-    resting = column[(time <= time[0] + import_map.rest) & np.isfinite(column)]
-    if not len(resting):
+    rows = np.flatnonzero((time <= time[0] + import_map.rest) & np.isfinite(column))
+    if not len(rows):
         raise InputError(
             where, "rest", f"{name}: expected a reading in the first {import_map.rest:g} s of rest"
         )
-    return resting.mean()
+    begun = _motion_begins(time[rows], column[rows], noise)
+    if begun is not None:
+        raise InputError(
+            where, "rest",
+            f"{name}: expected rest in the first {import_map.rest:g} s, of which it rests for "
+            f"{begun - time[0]:.3g} s: it moves from {begun:.4g} s on",
+        )  # fmt: skip
+    return column[rows].mean()
+
+
+def _motion_begins(time, column, noise):
+    """Time at which readings (n_times,) leave where they start, beyond their noise, for some in a row; None of rest."""
+    first = column[time <= time[0] + _FIRST]
+    steps = np.abs(np.diff(first))  # whose median neither a slow motion nor a knock enters
+    own = np.median(steps) / NORMAL / np.sqrt(2.0) if len(steps) else 0.0
+    smooth = scipy.ndimage.median_filter(column, _IN_A_ROW, mode="nearest")
+    away, least = np.abs(smooth - np.median(first[:_IN_A_ROW])), max(own, noise)
+    return float(time[np.argmax(away > _AT_REST * least)]) if away.max() > _MOVES * least else None

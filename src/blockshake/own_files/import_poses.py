@@ -62,9 +62,8 @@ def markers_of_poses(filmed, source, body, import_map, structure, where):
         place = filmed.position + filmed.rotation @ np.array(marker.position)
         start = place[np.isfinite(place[:, 0]).argmax()]
         if import_map.rest:
-            start = [
-                rest_of(filmed.time, column, import_map, where, f"{source}: {body}.x") for column in place.T
-            ]
+            name, noise = f"{source}: {body}.x", import_map.sensors.marker_noise
+            start = [rest_of(filmed.time, column, import_map, where, name, noise) for column in place.T]
         found[marker.name] = place - start
     return found
 
