@@ -37,7 +37,7 @@ def _remarks(shaking, late=0.0, sign=1.0, moved=False, other=False):
     read = sign * shaking(TIME_ACC)[1] + generator.normal(0.0, ACCELEROMETER_NOISE, len(TIME_ACC))
     if other:
         read = np.random.default_rng(6).normal(0.0, 2.0, len(TIME_ACC))
-    return clock_remarks(TIME, marker, TIME_ACC + late, read, 0.5 * NOISE, "t1.nc", moved)
+    return clock_remarks(TIME, marker, TIME_ACC + late, read, 0.5 * NOISE, "t1.nc", moved)[1]
 
 
 @pytest.mark.parametrize("shaking", [_earthquake, _burst])

@@ -24,7 +24,7 @@ _SIDEWAYS = 3.0  # times the motion along z, that blocks shaken along x do not m
 
 
 def clock_remarks(time, marker, time_acc, acceleration, noise, path, moved=False):
-    """Remarks on the slab's accelerometer along x against the slab's markers: clock, sign and size.
+    """Lag of the accelerometers' clock by the slab's channels and markers along x; remarks on it, sign and size.
 
     Parameters
     ----------
@@ -39,6 +39,12 @@ def clock_remarks(time, marker, time_acc, acceleration, noise, path, moved=False
     moved : bool
         Whether `on_one_clock` has moved ``time_acc`` already.
 
+    Returns
+    -------
+    lag : float or None
+        By how much ``time_acc`` is too late [s]; 0 where nothing tells it, None where both agree at no lag.
+    remarks : list of str
+
     Raises
     ------
     InputError
@@ -50,28 +56,23 @@ def clock_remarks(time, marker, time_acc, acceleration, noise, path, moved=False
     of both, by steps of a marker's reading; a parabola through the best gives the rest. A lag of at most 10 ms is taken
     where no other one is better by more than 0.01 of correlation.
     """
-    if _unfit(time, marker) or _unfit(time_acc, acceleration):
-        return []
+    if unfit(time, marker) or unfit(time_acc, acceleration):
+        return 0.0, []
     step = np.median(np.diff(time))
     felt_at = np.arange(time_acc[0], time_acc[-1], step)
     inside = (time >= time[0] + _END) & (time <= time[-1] - _END)
     felt_inside = (felt_at >= felt_at[0] + _END) & (felt_at <= felt_at[-1] - _END)
-    slab = np.gradient(np.gradient(_band(time, marker), step), step)[inside]
-    read = _band(time_acc, acceleration)
+    slab = np.gradient(np.gradient(banded(time, marker), step), step)[inside]
+    read = banded(time_acc, acceleration)
     felt = np.interp(felt_at, time_acc, read)[felt_inside]
-    unseen = noise * (2.0 * np.pi) ** 2 * np.sqrt((BAND[1] ** 5 - BAND[0] ** 5) / 5.0 * 2.0 * step)
-    if (
-        min(len(slab), len(felt)) * step < SHORTEST
-        or np.sqrt(np.mean(slab**2)) < _SEEN * unseen
-        or not slab.any()
-    ):
-        return []
+    if min(len(slab), len(felt)) * step < SHORTEST or not seen(slab, time, noise):
+        return 0.0, []
     lags, correlation = correlations_by_lag(slab, felt, time[inside][0] - felt_at[felt_inside][0], 1.0 / step)
     peaks = _summits(lags, correlation)
     best = max(peaks, key=lambda peak: abs(peak[1]), default=(0.0, 0.0))
     if abs(best[1]) < RELATED:
         tried = lags[correlation != 0.0]
-        return [
+        return None, [
             "the slab's accelerometer along x does not read what its markers do at any lag of its clock from "
             f"{tried.min(initial=0.0):.3g} to {tried.max(initial=0.0):.3g} s (correlation at most {abs(best[1]):.2f})"
         ]
@@ -103,7 +104,7 @@ def clock_remarks(time, marker, time_acc, acceleration, noise, path, moved=False
         remarks.append(
             f"the accelerometers' clock may be wrong by cycles of the shaking: {_other_lags(best, others)}"
         )
-    return remarks
+    return lag, remarks
 
 
 def _summits(lags, correlation):
@@ -184,13 +185,21 @@ def carried_remarks(time, readings, names, slab, noise):
     return remarks
 
 
-def _unfit(time, values):
-    """Too short, too many gaps, or uneven."""
+def seen(acceleration, time, noise):
+    """Whether an acceleration in `BAND` [m/s2] stands out of that of white noise [m] at the times of the readings."""
+    step = np.median(np.diff(time))
+    unseen = noise * (2.0 * np.pi) ** 2 * np.sqrt((BAND[1] ** 5 - BAND[0] ** 5) / 5.0 * 2.0 * step)
+    return acceleration.any() and np.sqrt(np.mean(acceleration**2)) >= _SEEN * unseen
+
+
+def unfit(time, values):
+    """Whether readings (n_times,) are too few, have too many gaps, or are uneven in time [s], to be filtered."""
     steps = np.diff(time)
     lost = np.mean(~np.isfinite(values))
     return time[-1] - time[0] < SHORTEST or lost > _GAPS or np.ptp(steps) > EVEN * np.median(steps)
 
 
-def _band(time, values):
+def banded(time, values):
+    """Readings (n_times,) in `BAND`, gaps bridged, without lag."""
     known = np.isfinite(values)
     return in_band(np.interp(time, time[known], values[known]), 1.0 / np.median(np.diff(time)))

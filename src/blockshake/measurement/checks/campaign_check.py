@@ -19,6 +19,7 @@ from blockshake.measurement.campaigns.commanded_motion import (
 from blockshake.measurement.campaigns.faulty_readings import faulty_lines
 from blockshake.measurement.campaigns.initial_poses import initial_pose_lines
 from blockshake.measurement.checks.against_slab import carried_remarks, clock_remarks
+from blockshake.measurement.checks.block_channels import gravity_remarks, reversed_remarks
 from blockshake.measurement.checks.exchanged import exchange_remarks
 from blockshake.measurement.checks.quiet_noise import (
     accelerometer_noise,
@@ -201,6 +202,7 @@ class _Described:
             self.remarks += accelerometer_remarks(
                 self.test["channel"].values, fast, whole, self.sensors.accelerometer_noise
             )
+            self.remarks += gravity_remarks(self.test, self.structure, quiet_end)
             read = self.test["accelerometer"].transpose("time_acc", "channel").to_numpy()
             self.remarks += multiples(self.test["channel"].values, read) if (fast > 0.0).all() else []
 
@@ -249,14 +251,17 @@ class _Described:
             self.remarks.append(
                 f"{abs(late):.3g} s were {change} the accelerometers' times, by the slab's motion"
             )
-        channels = shaken_channels(self.test, self.structure)
+        channels, lag = shaken_channels(self.test, self.structure), 0.0
         if channels:
             readings = self.test["accelerometer"].to_numpy()
             readings = readings[:, np.isin(self.test["channel"], channels)].mean(axis=1)
             time_acc, slab = self.test["time_acc"].to_numpy(), self.slab[:, 0]
-            self.remarks += clock_remarks(
+            lag, remarks = clock_remarks(
                 self.time, slab, time_acc, readings, self.slab_noise, self.path, late is not None
             )
+            self.remarks += remarks
+        if "accelerometer" in self.test and lag is not None:
+            self.remarks += reversed_remarks(self.test, self.structure, self.sensors.marker_noise, lag)
 
 
 def multiples(columns, readings):
