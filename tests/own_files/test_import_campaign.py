@@ -1,5 +1,6 @@
 """Spreadsheets of a laboratory become a campaign, to the written digit, or one clear line."""
 
+import re
 from decimal import Decimal
 
 import numpy as np
@@ -96,6 +97,35 @@ def test_a_german_csv_comes_back_to_the_digit(virtual, zero, tmp_path):
     for name, rows in zip(("m.csv", "a.csv"), _tables(shown, ","), strict=True):
         (tmp_path / name).write_text("\n".join(";".join(row) for row in rows), encoding="cp1252")
     _equal_again(virtual, _map(tmp_path, virtual, "m.csv", "a.csv", ","), tmp_path)
+
+
+def test_a_logger_with_its_own_clock_is_refused_with_the_offset_that_the_slab_tells(
+    virtual, tmp_path, capsys
+):
+    """The logger is 4321.6 s late; both are compared at 100 Hz, so the offset is known to half of 10 ms."""
+    shown = virtual.assign_coords(time_acc=virtual["time_acc"] + 4321.6)
+    for name, rows in zip(("m.csv", "a.csv"), _tables(shown, ","), strict=True):
+        (tmp_path / name).write_text("\n".join(";".join(row) for row in rows), encoding="cp1252")
+    source = _map(tmp_path, virtual, "m.csv", "a.csv", ",")
+    asked = ["import-campaign", str(source), "--output", str(tmp_path / "campaign")]
+    assert main(asked) == 2
+    said = capsys.readouterr().err
+    assert f"{source}: tests.t1.accelerometers_offset: " in said
+    assert re.search(
+        r"expected the clock of time, 0\.00\d+ to 7\.99\d+ s, not 4321\.6\d+ to 4329\.\d+ s; ", said
+    )
+    told = re.search(r"the slab's sensors agree with (-\d+\.\d{3}) s added to it\n", said)[1]
+    assert float(told) == pytest.approx(-4321.6, abs=0.006)
+    text = source.read_text()
+    source.write_text(text.replace("role: fit", "role: fit, accelerometers_offset: -4321.6"))
+    assert main(asked) == 0
+    again = load_test(load_campaign(tmp_path / "campaign"), "t1")
+    apart = [float(test["time_acc"][0] - test["time"][0]) for test in (again, virtual)]
+    assert apart[0] == pytest.approx(apart[1], abs=1e-5)
+    assert "the accelerometers' times" not in capsys.readouterr().out
+    source.write_text(text.replace('accelerometers: "a.csv"', "accelerometers_offset: 1.0"))
+    assert main(asked) == 2
+    assert "accelerometers_offset: expected a file accelerometers with it" in capsys.readouterr().err
 
 
 def test_a_workbook_comes_back_to_the_digit(virtual, tmp_path):

@@ -69,8 +69,8 @@ IMPORT = {
                 "high-face.x": {"column": "high-face.x", "unit": "m", "reversed": False, "time": "time_s",
                                 "recorder": False},
                 "felt-x": "felt-x"},
-    "tests": [{"name": "t1", "file": "t1.csv", "accelerometers": "felt.csv", "motion": "push.csv", "scale": 1.0,
-               "baseline": "auto", "role": "fit"}],
+    "tests": [{"name": "t1", "file": "t1.csv", "accelerometers": "felt.csv", "accelerometers_offset": 0.0,
+               "motion": "push.csv", "scale": 1.0, "baseline": "auto", "role": "fit"}],
 }  # fmt: skip
 VIRTUAL = {
     "name": "made", "seed": 1, "model": "nscd-rigid", "time_step": 1e-3, "numerics": {"nscd.impact_parts": 2},
@@ -421,6 +421,7 @@ ROWS = {
         ("tests.0.name", 7, "valid string"),
         ("tests.0.file", "nothing.csv", "readable file"),
         ("tests.0.accelerometers", "nothing.csv", "readable file"),
+        ("tests.0.accelerometers_offset", 60.0, "expected the clock of time"),
         ("tests.0.motion", "nothing.csv", "nothing.csv"),
         ("tests.0.scale", 0.0, "other than 0"),
         ("tests.0.baseline", "zero", _BASELINE),

@@ -1,5 +1,6 @@
 """Spreadsheets of a laboratory to a campaign's folder, whole or not at all."""
 
+import contextlib
 import re
 import warnings
 from collections.abc import Mapping
@@ -22,7 +23,7 @@ from blockshake.measurement.campaigns.campaign_folder import (
 )
 from blockshake.measurement.campaigns.faulty_readings import dropouts, dropped_words
 from blockshake.measurement.campaigns.lost_markers import lost_words
-from blockshake.measurement.campaigns.recorded_test import FIRST_READINGS, checked_test
+from blockshake.measurement.campaigns.recorded_test import FIRST_READINGS, ClockApartError, checked_test
 from blockshake.measurement.checks.campaign_check import campaign_lines
 from blockshake.measurement.checks.places import place_remarks
 from blockshake.measurement.sensors.accelerometers import accelerometer_channels
@@ -140,7 +141,7 @@ def _fill(import_map, folder, where):
             raise InputError(where, key, "expected motions in files of different names")
         readings, more = _read_readings(test, import_map, structure, where)
         remarks += [f"  {test.name}: {remark}" for remark in more]
-        with by_key(import_map, where):
+        with by_key(import_map, where), _offset_named(test, where):
             readings = checked_test(readings, structure, test.file)
         title = f"measured test {test.name}"
         sources = ", ".join(Path(one).name for one in (test.file, test.accelerometers) if one)
@@ -155,6 +156,17 @@ def _fill(import_map, folder, where):
     inside = structure_in_folder(import_map.structure, structure, folder)
     write_campaign_file(folder, header, import_map.name, inside, import_map.sensors.model_dump(), tests)
     return remarks
+
+
+@contextlib.contextmanager
+def _offset_named(test, where):
+    """Name the key that puts the file accelerometers on the clock of the others, of a test that has one."""
+    try:
+        yield
+    except ClockApartError as error:
+        if test.accelerometers is None:
+            raise
+        raise InputError(where, f"tests.{test.name}.accelerometers_offset", str(error)) from None
 
 
 def _read_readings(test, import_map, structure, where):
@@ -209,6 +221,7 @@ def _read_readings(test, import_map, structure, where):
             continue
         time_acc, read, more = columns_of(source, sensors, import_map, kind, where, source != test.file)
         remarks += more
+        time_acc = time_acc + test.accelerometers_offset
         dropped = dropouts(read)
         read[dropped] = np.nan
         lost += _dropped_lines(sensors, dropped, time_acc)
@@ -238,10 +251,11 @@ def _displacements(test, keys, posed, import_map, where):
         at, more, said = columns_of(
             test.accelerometers, apart, import_map, "displacement", where, recorder=True
         )
+        at = at + test.accelerometers_offset
         columns |= {key: at_times(time, at, values)[0] for key, values in zip(apart, more.T, strict=True)}
         if not any(np.isfinite(columns[key]).any() for key in apart):
             theirs, own = (f"{clock[0]:.6g} to {clock[-1]:.6g} s" for clock in (time, at))
-            wrong = f"expected the clock of the others, {theirs}, not {own}"
+            wrong = f"expected the clock of the others, {theirs}, not {own}: tests.{test.name}.accelerometers_offset"
             raise InputError(where, f"columns.{apart[0]}.recorder", wrong)
         remarks += [*said, f"{', '.join(apart)} of the recorder: both clocks are taken to have the same zero"]
     readings = np.column_stack([columns[key] for key in keys])

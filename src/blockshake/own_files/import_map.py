@@ -9,7 +9,7 @@ from blockshake.files import load_yaml, shipped_names
 from blockshake.measurement.campaigns.campaign import CommandedTest, Sensors
 from blockshake.paths import file_below
 from blockshake.tables.table_file import TableLayout
-from blockshake.validation import NotNegative, Positive, Strict, validated
+from blockshake.validation import Finite, NotNegative, Positive, Strict, validated
 
 
 class NamedColumn(Strict):
@@ -75,6 +75,16 @@ class ImportedTest(CommandedTest):
         None,
         description="the same of accelerometers and displacement transducers, where they are in another file or sheet",
     )
+    accelerometers_offset: Finite = Field(
+        0.0,
+        description="added to the times of the file accelerometers, whose clock may have another zero [s]",
+    )
+
+    @model_validator(mode="after")
+    def _offset_of_a_file(self):
+        if self.accelerometers_offset and self.accelerometers is None:
+            raise ValueError("accelerometers_offset: expected a file accelerometers with it")
+        return self
 
 
 class ImportMap(Strict):

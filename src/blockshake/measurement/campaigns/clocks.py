@@ -20,6 +20,7 @@ _RATE = 100.0  # Hz, at which recorder and optical system are compared
 BAND = (1.0, 8.0)  # Hz, where a table's motion is well above the noise of both instruments
 SHORTEST = 3.0  # s, of both records together
 RELATED = 0.8  # correlation, that instruments of one slab have
+AS_GOOD = 0.01  # of correlation, by which another lag may fall short: two standard errors in noise of a fifth
 _NEAR = 0.1  # s: smaller lags are found by the parity checks, as the fault `clock-lag`
 
 
@@ -206,9 +207,38 @@ def on_one_clock(test, structure):
     Second differences of the slab's displacement and the channel are compared in 1 to 8 Hz at all lags that leave 3 s
     of both, by their correlation in size.
     """
+    records = _slab_records(test, structure)
+    if records is None:
+        return test
+    lag, correlation, near = _best_lag(*records)
+    if correlation < RELATED or near >= RELATED:
+        return test
+    late = test["time_acc"] - lag
+    return test.assign_coords(time_acc=late).assign_attrs(recorder_late=float(lag))
+
+
+def agreement_words(test, structure):
+    """Words on what to add to the recorder's times for the slab's sensors to agree; none where they do not tell it."""
+    records = _slab_records(test, structure)
+    summits = [] if records is None else correlation_summits(*correlations_by_lag(*records))
+    best = max(summits, key=lambda summit: abs(summit[1]), default=(0.0, 0.0))
+    if abs(best[1]) < RELATED:
+        return ""
+    others = [one for one in summits if one is not best and abs(one[1]) > abs(best[1]) - AS_GOOD]
+    return f"; the slab's sensors agree with {-best[0]:.3f} s added to it" + (
+        f", but {other_lags(best, others)}" if others else ""
+    )
+
+
+def _slab_records(test, structure):
+    """Acceleration of the slab along x by its markers, to a factor, and by its channels, in `BAND` at 100 Hz.
+
+    The first time of the one less that of the other comes with them [s]. None of a slab without a channel, and of
+    records that are short or mostly lost.
+    """
     channels = shaken_channels(test, structure)
     if not channels:
-        return test
+        return None
     time, time_acc = test["time"].to_numpy(), test["time_acc"].to_numpy()
     read = (
         test["accelerometer"].sel(channel=channels).transpose("time_acc", "channel").to_numpy().mean(axis=1)
@@ -216,13 +246,8 @@ def on_one_clock(test, structure):
     moved = _band(time, slab_displacement(test, structure)[:, 0])
     felt = _band(time_acc, read)
     if moved is None or felt is None:
-        return test
-    moved = np.gradient(np.gradient(moved))
-    lag, correlation, near = _best_lag(moved, felt, time[0] - time_acc[0])
-    if correlation < RELATED or near >= RELATED:
-        return test
-    late = test["time_acc"] - lag
-    return test.assign_coords(time_acc=late).assign_attrs(recorder_late=float(lag))
+        return None
+    return np.gradient(np.gradient(moved)), felt, time[0] - time_acc[0]
 
 
 def correlations_by_lag(moved, felt, apart, rate=_RATE):
@@ -262,6 +287,33 @@ def _best_lag(moved, felt, apart):
     best = int(correlation.argmax())
     near = correlation[np.abs(lags) <= _NEAR].max(initial=0.0)
     return lags[best], float(correlation[best]), float(near)
+
+
+def correlation_summits(lags, correlation):
+    """Lag [s] and correlation of every summit in size, and of no end, finer than the lags by a parabola."""
+    size = np.abs(correlation)
+    rows = 1 + np.flatnonzero(
+        (size[1:-1] >= size[:-2]) & (size[1:-1] > size[2:]) & (size[:-2] > 0.0) & (size[2:] > 0.0)
+    )
+    found = []
+    for row in rows:
+        before, here, after = correlation[row - 1 : row + 2]
+        place = 0.5 * (before - after) / (before - 2.0 * here + after)
+        found.append((lags[row] + place * (lags[1] - lags[0]), here - 0.25 * (before - after) * place))
+    return found
+
+
+def other_lags(best, others):
+    """Words on other lags that are about as good, (lag, correlation) each."""
+    near = min(others, key=lambda peak: abs(peak[0] - best[0]))
+    sign = ", with the sign reversed" if near[1] * best[1] < 0.0 else ""
+    count = f"{len(others)} other lags are" if len(others) > 1 else "another lag is"
+    return f"{count} about as good, the nearest {seconds(abs(near[0] - best[0]))} from it{sign}"
+
+
+def seconds(size):
+    """A time of at most a minute in words, to a tenth of a millisecond."""
+    return f"{1e3 * size:.3g} ms" if size < 1.0 else f"{size:.4g} s"
 
 
 def _band(time, values):

@@ -6,7 +6,7 @@ import numpy as np
 
 from blockshake.errors import InputError
 from blockshake.geometry.schema import AXES
-from blockshake.measurement.campaigns.clocks import from_first_reading, missing_rows
+from blockshake.measurement.campaigns.clocks import agreement_words, from_first_reading, missing_rows
 from blockshake.measurement.campaigns.faulty_readings import faulty_lines, instruments, stuck, without_faulty
 from blockshake.measurement.campaigns.initial_poses import initial_poses, with_initial_poses
 from blockshake.measurement.campaigns.lost_markers import without_lost
@@ -90,7 +90,7 @@ def checked_test(test, structure, path):
         test = _ordered_axes(test, path)
     _check_names(test, structure, path)
     _check_driven(test, structure, path)
-    _check_clocks(test, path)
+    _check_clocks(test, structure, path)
     _check_readings(test, path)
     _check_start(test, path)
     check_initial_places(test, structure, path)
@@ -149,8 +149,12 @@ def _check_driven(test, structure, path):
         raise InputError(path, f"{read[0]}.x", wrong)
 
 
-def _check_clocks(test, path):
-    """The recorder's clock runs next to the markers'."""
+class ClockApartError(InputError):
+    """A recorder whose clock does not run next to the markers'."""
+
+
+def _check_clocks(test, structure, path):
+    """The recorder's clock runs next to the markers': `ClockApartError`, with what the slab's sensors tell of it."""
     if "time_acc" not in test.coords:
         return
     clocks = [(time[0], time[-1]) for time in (test["time"].to_numpy(), test["time_acc"].to_numpy())]
@@ -158,7 +162,7 @@ def _check_clocks(test, path):
     if shared < _OVERLAP * min(end - begin for begin, end in clocks):
         (begin, end), (begin_acc, end_acc) = clocks
         wrong = f"expected the clock of time, {begin:.13g} to {end:.13g} s, not {begin_acc:.13g} to {end_acc:.13g} s"
-        raise InputError(path, "time_acc", wrong)
+        raise ClockApartError(path, "time_acc", wrong + agreement_words(test, structure))
 
 
 def _check_readings(test, path):

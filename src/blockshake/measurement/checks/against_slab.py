@@ -3,7 +3,17 @@
 import numpy as np
 
 from blockshake.errors import InputError
-from blockshake.measurement.campaigns.clocks import BAND, RELATED, SHORTEST, correlations_by_lag, in_band
+from blockshake.measurement.campaigns.clocks import (
+    AS_GOOD,
+    BAND,
+    RELATED,
+    SHORTEST,
+    correlation_summits,
+    correlations_by_lag,
+    in_band,
+    other_lags,
+    seconds,
+)
 from blockshake.measurement.sensors.accelerometers import EVEN
 
 _END = 0.5  # s at both ends, where the filter is not yet itself
@@ -68,7 +78,7 @@ def clock_remarks(time, marker, time_acc, acceleration, noise, path, moved=False
     if min(len(slab), len(felt)) * step < SHORTEST or not seen(slab, time, noise):
         return 0.0, []
     lags, correlation = correlations_by_lag(slab, felt, time[inside][0] - felt_at[felt_inside][0], 1.0 / step)
-    peaks = _summits(lags, correlation)
+    peaks = correlation_summits(lags, correlation)
     best = max(peaks, key=lambda peak: abs(peak[1]), default=(0.0, 0.0))
     if abs(best[1]) < RELATED:
         tried = lags[correlation != 0.0]
@@ -76,7 +86,7 @@ def clock_remarks(time, marker, time_acc, acceleration, noise, path, moved=False
             "the slab's accelerometer along x does not read what its markers do at any lag of its clock from "
             f"{tried.min(initial=0.0):.3g} to {tried.max(initial=0.0):.3g} s (correlation at most {abs(best[1]):.2f})"
         ]
-    good = [peak for peak in peaks if abs(peak[1]) > abs(best[1]) - _AS_GOOD]
+    good = [peak for peak in peaks if abs(peak[1]) > abs(best[1]) - AS_GOOD]
     at_once = [peak for peak in good if abs(peak[0]) <= _LAG and peak[1] > 0.0]
     lag, _ = best = at_once[0] if at_once else best
     both = (time_acc - lag >= time[inside][0]) & (time_acc - lag <= time[inside][-1])
@@ -89,49 +99,22 @@ def clock_remarks(time, marker, time_acc, acceleration, noise, path, moved=False
             "another unit",
         )  # fmt: skip
     others = [peak for peak in good if peak is not best]
-    doubt = f"; {_other_lags(best, others)}" if others else ""
+    doubt = f"; {other_lags(best, others)}" if others else ""
     remarks = []
     if not _GAIN[0] < gain < _GAIN[1]:
         unsure = doubt if gain < 0.0 and abs(lag) <= _LAG else ""
         remarks.append(f"the slab's accelerometer along x reads {gain:.3g} of what its markers do{unsure}")
     if abs(lag) > _LAG:
-        change = f"subtract {_seconds(lag)} from" if lag > 0.0 else f"add {_seconds(-lag)} to"
+        change = f"subtract {seconds(lag)} from" if lag > 0.0 else f"add {seconds(-lag)} to"
         remarks.append(
             f"{change} the accelerometers' times, by which the slab's accelerometer reads what its markers do "
             f"(correlation {abs(best[1]):.2f}){doubt}"
         )
     elif moved and others:
         remarks.append(
-            f"the accelerometers' clock may be wrong by cycles of the shaking: {_other_lags(best, others)}"
+            f"the accelerometers' clock may be wrong by cycles of the shaking: {other_lags(best, others)}"
         )
     return lag, remarks
-
-
-def _summits(lags, correlation):
-    """Lag [s] and correlation of every summit in size, and of no end, finer than the lags by a parabola."""
-    size = np.abs(correlation)
-    rows = 1 + np.flatnonzero(
-        (size[1:-1] >= size[:-2]) & (size[1:-1] > size[2:]) & (size[:-2] > 0.0) & (size[2:] > 0.0)
-    )
-    found = []
-    for row in rows:
-        before, here, after = correlation[row - 1 : row + 2]
-        place = 0.5 * (before - after) / (before - 2.0 * here + after)
-        found.append((lags[row] + place * (lags[1] - lags[0]), here - 0.25 * (before - after) * place))
-    return found
-
-
-def _other_lags(best, others):
-    """Words on other lags that are about as good, (lag, correlation) each."""
-    near = min(others, key=lambda peak: abs(peak[0] - best[0]))
-    sign = ", with the sign reversed" if near[1] * best[1] < 0.0 else ""
-    count = f"{len(others)} other lags are" if len(others) > 1 else "another lag is"
-    return f"{count} about as good, the nearest {_seconds(abs(near[0] - best[0]))} from it{sign}"
-
-
-def _seconds(size):
-    """A time of at most a minute in words, to a tenth of a millisecond."""
-    return f"{1e3 * size:.3g} ms" if size < 1.0 else f"{size:.4g} s"
 
 
 def carried_remarks(time, readings, names, slab, noise):
