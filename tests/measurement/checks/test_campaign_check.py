@@ -160,6 +160,26 @@ def test_what_is_odd_but_usable_is_remarked(what, tmp_path):
     assert [line for line in lines if re.search(remark, line)], lines
 
 
+@pytest.mark.parametrize("role", ["fit", "sealed"])
+@pytest.mark.parametrize(
+    ("factor", "said"),
+    [
+        (0.001, "1000 times as large: is the unit m, not mm, or mm, not um?"),
+        (0.01, "100 times as large: is the unit m, not cm?"),
+        (10.0, "0.1 times as large: is the unit mm, not cm?"),
+        (0.103, "10 times as large: is the unit cm, not mm?"),
+        (0.11, None),  # 10 % off
+    ],
+)
+def test_another_unit_is_named_where_the_table_would_follow_its_command_in_it(factor, said, role, tmp_path):
+    """Noise as in the wrong unit; the table follows the command within 1 %."""
+    test = resting_stack().drop_vars("accelerometer").drop_dims("time_acc")
+    _scaled(factor)(test)
+    lines = campaign_lines(write_campaign(tmp_path, test, role=role))
+    found = [line for line in lines if "would follow" in line]
+    assert found == ([f"  t1: the table would follow its command with readings {said}"] if said else [])
+
+
 def test_a_record_without_the_strong_part_is_remarked(tmp_path):
     test = resting_stack().isel(time=slice(0, 400), time_acc=slice(0, 1000))
     lines = campaign_lines(write_campaign(tmp_path, test))
@@ -220,7 +240,10 @@ REFUSED = {
     "x reversed": (_reverse, {}, "axis: expected the table to move along x as commanded; it moves by -1.00"),
     "x reversed, sealed": (_reverse, {"role": "sealed"}, "axis: expected the table to move along x as"),
     "millimetres": (_scaled(1000.0), {}, "marker_displacement: expected metres; a displacement of"),
-    "centimetres": (_scaled(100.0), {}, "marker_displacement: expected metres; the table moves by 100 times what"),
+    "centimetres": (
+        _scaled(100.0), {}, "marker_displacement: expected metres; the table moves by 100 times what was commanded; "
+        "the table would follow its command with readings 0.01 times as large: is the unit cm, not m",
+    ),
     "centimetres, sealed": (_scaled(100.0), {"role": "sealed"}, "marker_displacement: expected metres; the table"),
     "millimetres, no command": (_resting_millimetres, LATER, r"\S+: expected metres; its noise at rest, 0\.\d+, is"),
     "one marker in millimetres": (_one_in_millimetres, LATER, f"{MARKERS[7]}: expected metres; its noise"),

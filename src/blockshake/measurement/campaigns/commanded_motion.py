@@ -1,5 +1,6 @@
 """The slab's markers, which are the input, held against the motion that was commanded."""
 
+from decimal import Decimal
 from os.path import isfile
 from typing import NamedTuple
 
@@ -9,6 +10,7 @@ from blockshake.dynamics.load_motion import load_motion
 from blockshake.errors import InputError
 from blockshake.files import shipped_names
 from blockshake.measurement.campaigns.clocks import command_start
+from blockshake.tables.units import UNITS
 
 _FOLLOWED = (0.8, 1.25)  # of the command, by which a table may move without a word
 _SEEN = 2.0  # times the slab's noise, that the command's standard deviation must be to be judged
@@ -16,6 +18,7 @@ _RELATED = 0.7  # correlation of the slab with the command, beyond which one is 
 _SURE = 0.95  # correlation of velocities, above which no other motion is tried
 _BETTER = 0.25  # of the variance that the stated motion leaves, that another may leave
 _UNIT = 20.0  # times the command, by which no table moves; centimetres are a hundred times
+_PRECISE = 0.05  # of the command, within which a table follows it in another unit
 _ONE_AXIS = 3.0  # times the motion along another axis
 
 
@@ -64,7 +67,7 @@ def check_followed(followed, path):
         raise InputError(path, "axis", wrong)
     if abs(correlation[0]) > _RELATED and abs(share[0]) > _UNIT:
         wrong = f"expected metres; the table moves by {abs(share[0]):.3g} times what was commanded"
-        raise InputError(path, "marker_displacement", wrong)
+        raise InputError(path, "marker_displacement", "; ".join([wrong, *_unit_words(abs(share[0]))]))
     if correlation[0] < -_RELATED:
         wrong = f"expected the table to move along x as commanded; it moves by {share[0]:.2f} of it, x is reversed"
         raise InputError(path, "axis", wrong)
@@ -76,9 +79,23 @@ def followed_remarks(followed, role):
         others = "another motion, another start or another time scale"
         return [f"the table does not follow the commanded motion: {others}"]
     share = followed.share[0]
+    if words := _unit_words(share):
+        return words
     if role != "sealed" and not _FOLLOWED[0] < share < _FOLLOWED[1]:
         return [f"the table moved by {share:.2f} of what was commanded"]
     return []
+
+
+def _unit_words(share):
+    """Words on the unit by which a table that moved by a share of its command would follow it, if one does."""
+    power = -round(np.log10(share)) if share > 0.0 else 0
+    factor = Decimal(10) ** power
+    sizes = UNITS["displacement"].items()
+    names = [f"{one}, not {other}" for one, size in sizes for other, less in sizes if size == factor * less]
+    if not power or not names or abs(share * float(factor) - 1.0) > _PRECISE:
+        return []
+    return [f"the table would follow its command with readings {float(factor):g} times as large: is the unit "
+            f"{', or '.join(names)}?"]  # fmt: skip
 
 
 def another_record_remarks(test, slab, campaign, entry):
