@@ -23,7 +23,13 @@ _IN_A_FOLDER = (
     "ends, one in another folder runs with it. What was stopped goes on where it was."
 )
 # of arguments that have another name
-_OPTIONS = {"parameters": "--set", "channels": "--column", "columns": "--column", "options": "options"}
+_OPTIONS = {
+    "parameters": "--set",
+    "channels": "--column",
+    "columns": "--column",
+    "components": "--component",
+    "options": "options",
+}
 UNREAD = 141  # whoever reads the output has gone, as after `blockshake parameters | head -1`
 
 

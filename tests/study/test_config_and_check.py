@@ -7,6 +7,7 @@ import pytest
 import yaml
 
 from blockshake.dynamics.load_motion import load_motion
+from blockshake.dynamics.motion import ground_motion
 from blockshake.errors import InputError
 from blockshake.files import PACKAGE, load_yaml
 from blockshake.geometry.structure import load_structure
@@ -208,6 +209,23 @@ def test_check_says_what_a_good_file_is(monkeypatch):
     assert said.startswith(
         "a study of 4 cases by ls-dem (50 samples), nscd-rigid (50 samples), nscd-elastic (1 to 6 samples), "
     )
+
+
+def test_the_peaks_of_every_axis_that_moves_are_told():
+    """Half a sine of amplitude a over T ends at a velocity of 2 a T / pi and a displacement of a T^2 / pi."""
+    time = np.linspace(0.0, 1.0, 2001)
+    half, along = np.sin(np.pi * time), {"x": 1.0, "y": 2.0, "z": 3.0}
+    motion = ground_motion("all", time, {axis: size * half for axis, size in along.items()}, "acceleration")
+    assert (
+        "; peaks along x: 1 m/s2, 0.637 m/s, 0.318 m; peaks along y: 2 m/s2, 1.27 m/s, 0.637 m; "
+        "peaks along z: 3 m/s2, 1.91 m/s, 0.955 m; arrays"
+    ) in check(motion)
+    vertical = ground_motion("up", time, {"z": half, "pitch_y": -0.02 * time}, "acceleration")
+    assert "acceleration; peaks along z: 1 m/s2, 0.637 m/s, 0.318 m; pitch up to 0.02 rad; arrays" in check(
+        vertical
+    )
+    still = ground_motion("still", time, {"x": 0.0 * time}, "acceleration")
+    assert "; peaks along x: 0 m/s2, 0 m/s, 0 m; arrays" in check(still)
 
 
 def test_slenderness_is_along_x_and_to_both_sides_of_an_eccentric_mass(make_mapping):

@@ -9,12 +9,13 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from blockshake.dynamics.baseline import AUTO, NONE, correct_baseline
-from blockshake.dynamics.motion import GroundMotion, check_finite, ground_motion
+from blockshake.dynamics.motion import CHANNELS, PITCH, GroundMotion, check_finite, ground_motion
 from blockshake.dynamics.records.at2 import is_at2, read_at2
 from blockshake.dynamics.records.contract_csv import kept_attributes, motion_of_arrays, read_motion_csv
 from blockshake.dynamics.records.cosmos import is_cosmos, read_cosmos
 from blockshake.dynamics.records.csmip import is_csmip, read_csmip
 from blockshake.dynamics.records.dyna import is_dyna, read_dyna
+from blockshake.dynamics.records.joined_rows import joined_rows
 from blockshake.dynamics.records.knet import is_knet, read_knet
 from blockshake.dynamics.records.record import chosen_records, one_motion
 from blockshake.dynamics.records.smc import is_smc, read_smc
@@ -67,7 +68,8 @@ def load_motion(
     name : str, optional
         That results use; by default that of the file, or ``arrays``.
     components : dict of str to path, optional
-        By axis the files of the other components of the record, of one channel each; a minus before a path reverses.
+        By axis the files of the other components of a record or a CSV, of one channel each; a minus before a path
+        reverses.
 
     Returns
     -------
@@ -136,10 +138,19 @@ def _read(source, baseline, channels, components):
                 )
             chosen[axis] = _component(axis, str(other))
         return _record_motion(one_motion(chosen), path, baseline, channels, components)
-    _check_no_record(channels, components, path)
-    if "time_s" in text.partition("\n")[0] or path.suffix.lower() == ".csv":
-        motion = _motion_of_rows(read_motion_csv(text, path), path.name, "csv")
+    is_csv = "time_s" in text.partition("\n")[0] or path.suffix.lower() == ".csv"
+    _check_no_record(channels, {} if is_csv else components, path)
+    if is_csv:
+        rows = read_motion_csv(text, path)
+        rests = []
+        if components:
+            *rows, rests = _joined_csv(rows, path, components)
+        motion = _motion_of_rows(rows, path.name, "csv")
         kept = motion.attributes | kept_attributes(path, text)
+        if components:
+            kept["components"] = ", ".join(filter(None, (kept.get("components"), _named(components))))
+        if rests:
+            kept["assumed"] = "; ".join(rests)
         return correct_baseline(replace(motion, attributes=kept), baseline, path)
     raise InputError(
         path, "",
@@ -167,6 +178,30 @@ def _component(axis, source):
     return path, chosen_records(records, channel, path)[axis]
 
 
+def _joined_csv(rows, path, components):
+    """Times, columns and kind of a CSV with others of one column as its components, and words on shorter ones."""
+    time, columns, kind = rows
+    parts = {axis: (path, time, values) for axis, values in columns.items()}
+    for axis, source in components.items():
+        if axis not in CHANNELS[:PITCH]:
+            raise InputError(Argument("components"), axis, f"expected {', '.join(CHANNELS[:PITCH])}")
+        if axis in parts:
+            raise InputError(Argument("components"), axis, f"expected no second one; {path} is {axis}")
+        other = Path(str(source).removeprefix("-"))
+        times, found, its = read_motion_csv(read_foreign_text(other), other)
+        if len(found) != 1 or its != kind:
+            wrong = f"expected one column of {kind}, as a component of {path}, found {its} {', '.join(found)}"
+            raise InputError(other, "", wrong)
+        (values,) = found.values()
+        parts[axis] = other, times, -values + 0.0 if str(source).startswith("-") else values
+    time, columns, rests = joined_rows(parts, kind)
+    return time, columns, kind, rests
+
+
+def _named(components):
+    return ", ".join(f"{axis}: {Path(other).name}" for axis, other in components.items())
+
+
 def _motion_of_rows(rows, source, form):
     """Motion of times, columns and kind, as of `read_motion_csv`."""
     time, columns, kind = rows
@@ -184,7 +219,9 @@ def _check_no_record(channels, components, path):
         wrong = f"expected for a record, or with --unit for a table; {path} is neither"
         raise InputError(Argument("channels"), "", wrong)
     if components:
-        raise InputError(Argument("components"), "", f"expected with a record; {path} is none")
+        raise InputError(
+            Argument("components"), "", f"expected with a record or a CSV of the project; {path} is none"
+        )
 
 
 def _record_motion(records, path, baseline, channels, components):
@@ -196,8 +233,7 @@ def _record_motion(records, path, baseline, channels, components):
     assumed += dict.fromkeys(record.assumed for record in records.values())
     attributes |= {"checked": first.checked, "assumed": "; ".join(filter(None, assumed)) or "nothing"}
     if components:
-        names = (f"{axis}: {Path(other).name}" for axis, other in components.items())
-        attributes["components"] = ", ".join(names)
+        attributes["components"] = _named(components)
     if any(record.channel for record in records.values()):
         attributes["channels"] = ", ".join(f"{axis}: {record.channel}" for axis, record in records.items())
     motion = ground_motion(path.stem, time, columns, "acceleration", {**attributes, **first.metadata})

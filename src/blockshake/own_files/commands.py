@@ -20,11 +20,12 @@ def add_data_commands(add):
     _add_options(command, ("--unit UNIT", "of a table: m/s2, cm/s2, g, m/s, m, mm, ...; never guessed"))
     command.add_argument(
         "--column", action="append", default=[], metavar="AXIS=COLUMN",
-        help="such as x=EW, or x=-EW reversed, repeatable; of a record with several channels x=NUMBER or x=NAME",
+        help="such as x=EW, or x=-EW reversed, repeatable; of a record with several channels x=NUMBER or x=NAME; with "
+        "--step y=values: all values in order",
     )  # fmt: skip
     command.add_argument(
         "--component", action="append", default=[], metavar="AXIS=FILE",
-        help="another component of the record in a file of its own, such as y=NS.AT2, or y=-NS.AT2 reversed",
+        help="another component in a file of its own and the same form, such as y=NS.AT2, or y=-NS.AT2 reversed",
     )  # fmt: skip
     _add_options(
         command, ("--step S", "between rows without times; without --column all values in order are x")

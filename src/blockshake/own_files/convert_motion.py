@@ -42,8 +42,9 @@ def convert_motion(
         ``auto``, ``none`` or a corner frequency [Hz], as of `load_motion`. A table is corrected with a frequency alone.
     columns : dict of str to str, optional
         By axis (``x``, ``y``, ``z``) the column of a table, or the channel of a record; a minus before it reverses.
+        With ``step``, ``values`` is all values in order.
     components : dict of str to path, optional
-        By axis the files of a record's other components, as of `load_motion`.
+        By axis the files of the other components, as of `load_motion`; those of a table have its form.
     unit : str, optional
         Unit of a table's values, such as ``g`` or ``cm/s2``: accelerations, velocities or displacements.
     time, time_unit : str, optional
@@ -93,12 +94,12 @@ def _of_table(source, baseline, columns, components, given, layout):
     if not unit:
         wrong = "expected for a table; the unit and the columns are never guessed"
         raise InputError(Argument("unit"), "", wrong)
-    if components:
-        raise InputError(Argument("components"), "", "expected with a record, not a table")
     if step is not None and (time or time_unit):
         raise InputError(Argument("step"), "", "expected where there are no times")
     if not columns and step is None:
         raise InputError(Argument("columns"), "", "expected for a table, or a step for values without times")
     step = None if step is None else positive_number(str(step), Argument("step"), step)
     table = validated(TableLayout, layout, Argument("layout"))
-    return load_motion_table(source, table, time or "time_s", columns, unit, time_unit or "s", baseline, step)
+    return load_motion_table(
+        source, table, time or "time_s", columns, unit, time_unit or "s", baseline, step, components
+    )

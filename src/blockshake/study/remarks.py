@@ -190,12 +190,19 @@ def _held_up(structure):
 
 
 def motion_line(motion):
-    """Duration, kind, peaks along x and provenance of a `GroundMotion`, in one line."""
-    peaks = motion_figures(motion)
+    """Duration, kind, peaks along the axes that move, pitch and provenance of a `GroundMotion`, in one line."""
+    places = motion.evaluate(motion.table.breaks)
+    axes = [axis for axis, place in zip("xyz", places.T, strict=False) if np.ptp(place) > 0.0] or ["x"]
+    words = []
+    for axis in axes:
+        peaks = motion_figures(motion, axis)
+        most = peaks["peak_acceleration"], peaks["peak_velocity"], peaks["peak_displacement"]
+        words.append("peaks along {}: {:.3g} m/s2, {:.3g} m/s, {:.3g} m".format(axis, *most))
+    if places[:, PITCH].any():
+        words.append(f"pitch up to {np.abs(places[:, PITCH]).max():.3g} rad")
     return (
-        f"a motion of {motion.duration:g} s, given as {motion.kind}; peaks along x: "
-        f"{peaks['peak_acceleration']:.3g} m/s2, {peaks['peak_velocity']:.3g} m/s, "
-        f"{peaks['peak_displacement']:.3g} m; {provenance(motion.attributes)}"
+        f"a motion of {motion.duration:g} s, given as {motion.kind}; {'; '.join(words)}; "
+        f"{provenance(motion.attributes)}"
     )
 
 

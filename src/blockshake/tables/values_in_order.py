@@ -27,6 +27,8 @@ def values_in_order(path, layout, step):
     values : float64 array, shape (n_values,)
     said : str
         Lines, and values a line, that were read.
+    above : dict of int to str
+        Lines above the values, by their numbers.
 
     Raises
     ------
@@ -62,7 +64,8 @@ def values_in_order(path, layout, step):
     coded = missing_code(values)
     if coded is not None:
         raise InputError(path, "", f"expected values; {values[coded]:g} looks like a code for a missing one")
-    return values, f"values of lines {first} to {last}, {usual} a line"
+    above = dict(enumerate(lines[: first - 1], start=1))
+    return values, f"values of lines {first} to {last}, {usual} a line", above
 
 
 def _numbers(line, layout):

@@ -133,6 +133,115 @@ def test_a_header_of_numbers_is_no_value(head, words, tmp_path, capsys):
     np.testing.assert_allclose(read[:, 1], SHAPES["x"], atol=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("head", "words"),
+    [
+        ("ACC IN CM/S2 NPTS 403 DT 0.01", "line 2: expected m/s2, as --unit gives; the header states cm/s2"),
+        (
+            "ACCELERATION TIME SERIES IN UNITS OF G",
+            "line 2: expected m/s2, as --unit gives; the header states g",
+        ),
+        ("Velocity (cm/s)", "line 2: expected m/s2, as --unit gives; the header states cm/s"),
+        ("DT = 0.005 sec", "line 2: expected a step of 0.01 s, as --step gives; the header states 0.005 s"),
+        (
+            "Sampling rate (Hz): 200",
+            "line 2: expected a step of 0.01 s, as --step gives; the header states 0.005 s",
+        ),
+        (
+            "time step [ms]: 5",
+            "line 2: expected a step of 0.01 s, as --step gives; the header states 0.005 s",
+        ),
+        ("NPTS=  411, DT=  .0100 SEC", "line 2: expected 411 values, as the header states, found 403"),
+        ("Number of points: 404", "line 2: expected 404 values, as the header states, found 403"),
+    ],
+)
+def test_a_header_that_contradicts_an_option_is_refused(head, words, tmp_path, capsys):
+    cells = [f"{value:.6f}" for value in SHAPES["x"]]
+    (tmp_path / "in.txt").write_text("\n".join(["STATION G", head, *cells]) + "\n")
+    assert converted(tmp_path / "in.txt", "--step", "0.01") == 2
+    assert f"in.txt: {words}" in capsys.readouterr().err
+    # the same above a table
+    (tmp_path / "in.txt").write_text(
+        "\n".join(["STATION G", head, "EW;NS", *(f"{cell};1" for cell in cells)]) + "\n"
+    )
+    assert converted(tmp_path / "in.txt", "--step", "0.01", "--header", "3", "--column", "x=EW") == 2
+    assert f"in.txt: {words}" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "ACC IN M/S/S NPTS 403 DT 0.01", "Units: m/sec^2", "PEAK ACC 115.2 CM/S2 AT 4.3 S", "ALTITUDE IN M 250",
+        "PGV (cm/s): 12.3", "Height above sea in m", "dt 10 ms, 403 values", "Sampling frequency 100 Hz",
+        "in g and in m/s2: the second", "STATION MM G", "time interval .01",
+    ],
+)  # fmt: skip
+def test_a_header_that_agrees_or_tells_of_others_is_read(head, tmp_path):
+    (tmp_path / "in.txt").write_text("\n".join([head, *(f"{value:.6f}" for value in SHAPES["x"])]) + "\n")
+    np.testing.assert_allclose(converted(tmp_path / "in.txt", "--step", "0.01")[:, 1], SHAPES["x"], atol=1e-6)
+
+
+def test_values_in_order_go_along_any_axis(tmp_path, capsys):
+    cells = [f"{value:.6f}" for value in SHAPES["x"]]
+    lines = ["A record of somewhere", *(" ".join(cells[at : at + 8]) for at in range(0, len(cells), 8))]
+    (tmp_path / "in.txt").write_text("\n".join(lines) + "\n")
+    assert converted(tmp_path / "in.txt", "--step", "0.01", "--column", "z=-values") is not None
+    motion = load_motion(tmp_path / "out.csv")
+    np.testing.assert_allclose(motion.evaluate(TIME[:-1] + 1e-9, 2)[:, 2], -SHAPES["x"][:-1], atol=1e-5)
+    assert converted(tmp_path / "in.txt", "--step", "0.01", "--column", "y=1") == 2
+    assert "--column x=values takes all numbers in order" in capsys.readouterr().err
+
+
+def test_files_of_values_are_components_and_shorter_ones_rest(tmp_path):
+    for axis, count in (("x", 403), ("y", 303), ("z", 403)):
+        (tmp_path / f"{axis}.txt").write_text(
+            "\n".join(f"{value:.6f}" for value in SHAPES[axis][:count]) + "\n"
+        )
+    components = "--component", f"y=-{tmp_path / 'y.txt'}", "--component", f"z={tmp_path / 'z.txt'}"
+    read = converted(tmp_path / "x.txt", "--step", "0.01", *components, unit="cm/s2")
+    expected = 0.01 * np.stack([SHAPES["x"], -SHAPES["y"], SHAPES["z"]], axis=1)
+    expected[303:, 1] = 0.0
+    np.testing.assert_allclose(read[:, 1:], expected, atol=1e-8)
+    motion = load_motion(tmp_path / "out.csv")
+    assert motion.attributes["components"] == "y: y.txt, z: z.txt"
+    assert "y is reversed" in motion.attributes["assumed"]
+    assert "y.txt: rest for 1 s behind its end" in motion.attributes["assumed"]
+
+
+def test_tables_are_components_and_so_are_files_of_the_project(tmp_path, capsys):
+    for axis in "xy":
+        rows = [f"{at:.2f};{value:.6f}" for at, value in zip(TIME, SHAPES[axis], strict=True)]
+        (tmp_path / f"{axis}.csv").write_text("station\nt;acc (cm/s2)\n" + "\n".join(rows) + "\n")
+    (tmp_path / "z.txt").write_text("\n".join(f"{value:.6f}" for value in SHAPES["z"]) + "\n")
+    form = "--header", "2", "--time", "t", "--column", "x=acc (cm/s2)"
+    call = tmp_path / "x.csv", *form, "--component"
+    assert converted(*call, f"y={tmp_path / 'z.txt'}", unit="cm/s2") == 2
+    assert "convert each to a CSV, and join these by --component" in capsys.readouterr().err
+    assert converted(*call, f"x={tmp_path / 'y.csv'}", unit="cm/s2") == 2
+    assert "--component: x: expected no second one" in capsys.readouterr().err
+    both = converted(*call, f"y={tmp_path / 'y.csv'}", unit="cm/s2")
+    np.testing.assert_allclose(both[:, 1:], 0.01 * np.stack([SHAPES["x"], SHAPES["y"]], axis=1), atol=1e-8)
+    (tmp_path / "out.csv").rename(tmp_path / "xy.csv")
+    assert converted(tmp_path / "z.txt", "--step", "0.01", unit="cm/s2") is not None
+    motion = load_motion(tmp_path / "xy.csv", components={"z": f"-{tmp_path / 'out.csv'}"})
+    np.testing.assert_allclose(
+        motion.evaluate(TIME[:-1] + 1e-9, 2)[:, :3],
+        0.01 * np.stack([SHAPES["x"], SHAPES["y"], -SHAPES["z"]], axis=1)[:-1], atol=1e-6,
+    )  # fmt: skip
+    with pytest.raises(InputError, match=r"z\.txt: time_s: expected this column"):
+        load_motion(tmp_path / "xy.csv", components={"z": tmp_path / "z.txt"})
+
+
+def test_components_of_other_times_are_refused(tmp_path):
+    for name, step in (("x", 0.01), ("y", 0.02)):
+        rows = [f"{step * row:.2f},{value:.6f}" for row, value in enumerate(SHAPES[name])]
+        (tmp_path / f"{name}.csv").write_text("time_s,acceleration_x\n" + "\n".join(rows) + "\n")
+    with pytest.raises(
+        InputError, match=r"y.csv: expected the times of .*x.csv, 0.01 s in row 2, found 0.02 s"
+    ):
+        load_motion(tmp_path / "x.csv", components={"y": tmp_path / "y.csv"})
+
+
 def test_text_between_values_is_refused(tmp_path, capsys):
     (tmp_path / "in.txt").write_text("0.1 0.2\n0.3 0.4\nend of data\n")
     assert converted(tmp_path / "in.txt", "--step", "0.01") == 2
