@@ -110,3 +110,12 @@ USUAL = {
     "stoppers.INDEX.gap": (0.0, 1.0),
     "stoppers.INDEX.stiffness": (0.0, 1e12),
 }
+_DENSITY_SLIPS = (("g/cm3", 0.1, 15.0), ("kN/m3", 15.0, 100.0), ("g/m3", 1e5, 2.5e7))
+# Units in which a value of a size, between two ends, was perhaps given in place of that of SI
+PERHAPS = {
+    "materials.MATERIAL.density": _DENSITY_SLIPS,
+    "bodies.BODY.density": _DENSITY_SLIPS,
+    "materials.MATERIAL.youngs_modulus": (("GPa", 1.0, 1e3), ("MPa", 1e3, 1e6)),
+    "gravity": (("mm/s2", 9e3, 1e4), ("cm/s2", 9e2, 1e3)),
+    "stoppers.INDEX.gap": (("mm", 1.0, 1e3),),
+}

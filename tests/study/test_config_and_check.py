@@ -273,7 +273,47 @@ def test_check_remarks_a_structure_in_millimetres(tmp_path):
     for item in [*file["bodies"], *file["markers"], *file["accelerometers"]]:
         item["position"] = [1e3 * place for place in item["position"]]
     (tmp_path / "mm.yaml").write_text(yaml.safe_dump(file))
-    assert "block-1 is 2.4e+03 m long and weighs 7.37e+12 kg: expected m" in check(str(tmp_path / "mm.yaml"))
+    said = check(str(tmp_path / "mm.yaml"))
+    assert "block-1 is 2.4e+03 m long and weighs 7.37e+12 kg: expected m, perhaps given in mm" in said
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("materials.stone.density", 2.65, "2.65 kg/m3: 100 to 25000 kg/m3 is usual; perhaps given in g/cm3"),
+        ("materials.stone.density", 2650e3, "2.65e+06 kg/m3: 100 to 25000 kg/m3 is usual; perhaps given in g/m3"),
+        ("materials.stone.density", 24.0, "24 kg/m3: 100 to 25000 kg/m3 is usual; perhaps given in kN/m3"),
+        ("materials.stone.density", 50e3, "50000 kg/m3: 100 to 25000 kg/m3 is usual"),
+        ("materials.stone.youngs_modulus", 34.5, "34.5 Pa: 1e+07 to 1e+12 Pa is usual; perhaps given in GPa"),
+        ("materials.stone.youngs_modulus", 34500.0, "34500 Pa: 1e+07 to 1e+12 Pa is usual; perhaps given in MPa"),
+        (
+            "gravity", [0.0, 0.0, -9810.0],
+            "[0.0, 0.0, -9810.0] m/s2: -30 to 30 m/s2 is usual; perhaps given in mm/s2",
+        ),
+    ],
+)  # fmt: skip
+def test_a_remark_says_in_which_unit_a_value_was_perhaps_given(cube, key, value, words):
+    assert f"{key} is {words}" in unusual_values(load_structure(cube, {key: value}))
+
+
+@pytest.mark.parametrize(("edge", "density"), [(0.02, 2650.0), (50.0, 2650.0), (1.0, 100.0), (1.0, 23000.0)])
+def test_blocks_of_laboratories_and_of_buildings_of_cork_and_of_platinum_are_usual(
+    make_mapping, edge, density
+):
+    body = {"name": "block", "shape": "cube", "position": [0.0, 0.0, 0.5 * edge], "density": density}
+    shapes = {"cube": {"box": [edge] * 3}, "slab": {"box": [2.0 * edge, 2.0 * edge, 0.2]}}
+    assert structure_remarks(load_structure(make_mapping([body], shapes=shapes))) == []
+
+
+def test_a_table_that_turns_by_more_than_a_right_angle_is_refused(tmp_path):
+    (tmp_path / "deg.csv").write_text("time_s,pitch_y\n0,0\n1,1\n2,2\n3,30\n")
+    wrong = r"deg.csv: pitch_y: expected at most pi/2 rad, found 2 rad at 2 s; perhaps given in degrees"
+    with pytest.raises(InputError, match=wrong):
+        check(str(tmp_path / "deg.csv"))
+    (tmp_path / "rad.csv").write_text("time_s,pitch_y\n0,0\n1,0.5\n2,1.5\n")
+    assert "remark: the table pitches by 1.5 rad, 86 degrees" in check(str(tmp_path / "rad.csv"))
+    with pytest.raises(InputError, match="found -3 rad at 2 s"):
+        load_motion(tmp_path / "rad.csv", scale=-2.0)
 
 
 def test_every_parameter_with_a_usual_range_is_remarked_beyond_it():

@@ -82,10 +82,10 @@ def load_motion(
     Raises
     ------
     InputError
-        Missing file, unknown name, unknown format or unit, NaN, time that does not increase,
-        a gap in even rows, mixed kinds, too few rows, a file cut short, a header that contradicts its values, several
-        channels where none is named, a scale that is 0 or not finite, a displacement beyond all numbers, a correction
-        that cannot be made.
+        A table that turns by more than pi/2, a missing file, unknown name, unknown format or unit, NaN, time that does
+        not increase, a gap in even rows, mixed kinds, too few rows, a file cut short, a header that contradicts its
+        values, several channels where none is named, a scale that is 0 or not finite, a displacement beyond all
+        numbers, a correction that cannot be made.
 
     Examples
     --------
@@ -108,10 +108,20 @@ def load_motion(
 
 
 def scaled(motion, scale, source):
-    """A motion with every column multiplied by a finite scale; an `InputError` names ``source`` if that is too much."""
+    """A motion with every column multiplied by a finite scale; an `InputError` names ``source`` if that is too much.
+
+    Too much is a displacement beyond all numbers, or a pitch beyond pi/2: no table turns so far.
+    """
     with np.errstate(over="ignore", invalid="ignore"):  # looked at below
         motion = motion if scale == 1.0 else motion.scaled(scale)
     check_finite(motion, source)
+    pitch = motion.evaluate(motion.table.breaks)[:, PITCH]
+    far = np.flatnonzero(np.abs(pitch) > 0.5 * np.pi)
+    if len(far):
+        wrong = (
+            f"expected at most pi/2 rad, found {pitch[far[0]]:.4g} rad at {motion.table.breaks[far[0]]:.4g} s"
+        )
+        raise InputError(source, "pitch_y", f"{wrong}; perhaps given in degrees")
     return motion
 
 

@@ -13,13 +13,13 @@ from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import DEEPEST_OVERLAP, START_TOLERANCE
 from blockshake.geometry.structure_file import point_remarks
 from blockshake.pages.wording import count_words
-from blockshake.quantities import PHYSICAL, USUAL
+from blockshake.quantities import PERHAPS, PHYSICAL, USUAL
 from blockshake.simulation.parameter_table import instances
 from blockshake.simulation.rocking import columns, overhangs
 
 _FAR = 1e4  # m, from the origin: with some digits of forces lost, docs/guide/contracts.md
 # m, of the longest edge; no block of a structure or of a model test is beyond
-_SMALLEST, _LARGEST = 0.005, 25.0
+_SMALLEST, _LARGEST = 0.005, 60.0
 _ONE_G = 9.81  # m/s2
 _WEAKEST, _STRONGEST = 0.5, 30.0  # m/s2, of peak accelerations that move blocks and that were ever recorded
 _FARTHEST = 1.0  # m, of a shake table or of the ground
@@ -126,18 +126,11 @@ def structure_remarks(structure):
         remarks.append(
             f"{structure.body_names[body]} touches nothing that stands on a driven body: it will fall"
         )
-    for body in np.flatnonzero(~structure.driven):
-        name, solid = structure.body_names[body], structure.solid(body)
-        edge = np.ptp(solid.vertices, axis=0).max()
-        if not _SMALLEST <= edge <= _LARGEST:
-            remarks.append(
-                f"{name} is {edge:.3g} m long and weighs {structure.mass[body]:.3g} kg: expected m"
-            )
     return remarks
 
 
 def unusual_values(structure):
-    """One sentence for every parameter of a `Structure` beyond the values that are usual; a list of str."""
+    """One sentence for every parameter and every free block of a `Structure` of an unusual size; a list of str."""
     remarks = []
     for quantity in (one for one in PHYSICAL if one.name in USUAL):
         low, high = USUAL[quantity.name]
@@ -145,8 +138,24 @@ def unusual_values(structure):
             if value is not None and not (low <= np.min(value) and np.max(value) <= high):
                 shown = f"{value:g}" if isinstance(value, float) else list(value)
                 unit = "" if quantity.unit == "1" else f" {quantity.unit}"
-                remarks.append(f"{name} is {shown}{unit}: {low:g} to {high:g}{unit} is usual")
+                remarks.append(
+                    f"{name} is {shown}{unit}: {low:g} to {high:g}{unit} is usual"
+                    f"{_perhaps(quantity.name, np.abs(value).max())}"
+                )
+    for body in np.flatnonzero(~structure.driven):
+        edge = np.ptp(structure.solid(body).vertices, axis=0).max()
+        if not _SMALLEST <= edge <= _LARGEST:
+            remarks.append(
+                f"{structure.body_names[body]} is {edge:.3g} m long and weighs {structure.mass[body]:.3g} kg: expected "
+                f"m{', perhaps given in mm' if edge > _LARGEST else ''}"
+            )
     return remarks
+
+
+def _perhaps(name, size):
+    """Words on the unit in which a value of a quantity was perhaps given; empty where none fits its size."""
+    units = (unit for unit, low, high in PERHAPS.get(name, ()) if low <= size <= high)
+    return "".join(f"; perhaps given in {unit}" for unit in units)
 
 
 def _misfits(structure):
@@ -231,7 +240,7 @@ def motion_remarks(motion):
     if moved > _FARTHEST:
         remarks.append(f"the ground moves by {moved:.3g} m")
     if pitched > _STEEPEST:
-        remarks.append(f"the table pitches by {pitched:.2g} rad")
+        remarks.append(f"the table pitches by {pitched:.2g} rad, {np.degrees(pitched):.2g} degrees")
     if motion.duration > _LONGEST:
         remarks.append(f"the motion lasts {motion.duration:.0f} s: expected s, not ms")
     if motion.duration < _SHORTEST:
