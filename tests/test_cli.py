@@ -121,6 +121,15 @@ def test_bad_input_is_one_line_and_exit_2(arguments, line, capsys, tmp_path, mon
     assert list(tmp_path.iterdir()) == []
 
 
+def test_simulate_remarks_a_setting_without_use_and_one_in_another_unit(capsys, caplog, tmp_path):
+    caplog.set_level("INFO", logger="blockshake")
+    call = ["simulate", "--structure", "configuration-1", "--motion", "alkion", "--model", "nscd-rigid"]
+    call += ["--duration", "0.1", "--set", "restitution=0.9", "--set", "gravity=[0, 0, -9810]"]
+    assert main([*call, "--output", str(tmp_path / "x.nc")]) in (0, 3)
+    assert "remark: restitution has no effect on nscd-rigid, which has nscd_restitution" in caplog.messages
+    assert any(said.endswith("is usual; perhaps given in mm/s2") for said in caplog.messages)
+
+
 def test_simulate_remarks_a_motion_that_is_hardly_meant(capsys, caplog, tmp_path):
     """Accelerations in g taken as m/s2; the run itself is refused."""
     path = tmp_path / "weak.csv"

@@ -299,7 +299,7 @@ def _simulate(options):
     from blockshake.simulation.ending import ending
     from blockshake.simulation.models import model_of, part_parameters
     from blockshake.simulation.simulate import simulate_to_file
-    from blockshake.study.remarks import motion_remarks, unusual_values
+    from blockshake.study.remarks import motion_remarks, unused_settings, unusual_values
 
     _show_progress()
     structure, settings = load_structure(options.structure), _settings(options)
@@ -308,7 +308,8 @@ def _simulate(options):
     if len(models) == 1:
         outputs = dict.fromkeys(models, options.output)
     log = logging.getLogger("blockshake")
-    for remark in unusual_values(structure.with_parameters(part_parameters(settings)[0])):
+    changed = structure.with_parameters(part_parameters(settings)[0])
+    for remark in [*unusual_values(changed), *unused_settings(settings, models)]:
         log.info("remark: %s", remark)
     motion = load_motion(options.motion, options.scale, options.baseline)
     for remark in motion_remarks(motion):

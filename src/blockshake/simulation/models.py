@@ -142,7 +142,7 @@ MODELS = {
             parameters="blockshake.solvers.nscd.parameters:NscdParameters",
             refusal="blockshake.solvers.nscd.contact.polyhedra:check_convex",
             # rigid, bearing on corners, and of a restitution of its own
-            without_effect=("viscous_modulus", "youngs_modulus", "hollow", "restitution"),
+            without_effect=("viscous_modulus", "youngs_modulus", "poisson_ratio", "hollow", "restitution"),
             # a closer time step where bodies meet, as studies should: docs/theory/nscd.md
             perturbation=Perturbation(
                 stream=1,
@@ -180,6 +180,7 @@ ModelName = Literal[tuple(MODELS)]
 # name of a model of a study: its solver's alone, or with words after it, such as ls-dem-as-printed
 NAME_IN_STUDY = re.compile(rf"({'|'.join(MODELS)})((?:-[a-z0-9]+){{0,8}})")
 CALIBRATED = tuple(name for model in MODELS.values() for name in model.stiffness)
+_INSTEAD = {"restitution": "nscd_restitution", "nscd_restitution": "restitution"}
 _PREFIXES = tuple(f"{model.prefix}." for model in MODELS.values())
 
 
@@ -213,6 +214,34 @@ def solver_of(name):
             f"expected one of {solvers}, or one of these and words such as ls-dem-coarse",
         )
     return MODELS[named[1]]
+
+
+def ignored_by(name, models):
+    """Models, among names of models, that have no use for a parameter, and what they have in its place.
+
+    Parameters
+    ----------
+    name : str
+        Dotted.
+    models : list of str
+
+    Returns
+    -------
+    dict of str to str
+        By model the name of its own parameter, empty where it has none. A solver's parameter is ignored by none where
+        one of the models is of that solver.
+    """
+    chosen = [model_of(model) for model in models]
+    if name.startswith(_PREFIXES):
+        if any(name.startswith(f"{model.prefix}.") for model in chosen):
+            return {}
+        last = name.partition(".")[2]
+        return {
+            model.name: f"{model.prefix}.{last}" if last in model.schema.model_fields else ""
+            for model in chosen
+        }
+    last = name.split(".")[-1]
+    return {model.name: _INSTEAD.get(last, "") for model in chosen if last in model.without_effect}
 
 
 def part_parameters(parameters):

@@ -14,6 +14,7 @@ from blockshake.geometry.structure import DEEPEST_OVERLAP, START_TOLERANCE
 from blockshake.geometry.structure_file import point_remarks
 from blockshake.pages.wording import count_words
 from blockshake.quantities import PERHAPS, PHYSICAL, USUAL
+from blockshake.simulation.models import ignored_by
 from blockshake.simulation.parameter_table import instances
 from blockshake.simulation.rocking import columns, overhangs
 
@@ -150,6 +151,15 @@ def unusual_values(structure):
                 f"m{', perhaps given in mm' if edge > _LARGEST else ''}"
             )
     return remarks
+
+
+def unused_settings(names, models):
+    """One sentence for every parameter, by its dotted name, that one of the models has no use for; a list of str."""
+    return [
+        f"{name} has no effect on {model}" + (f", which has {instead}" if instead else "")
+        for name in names
+        for model, instead in ignored_by(name, models).items()
+    ]
 
 
 def _perhaps(name, size):
