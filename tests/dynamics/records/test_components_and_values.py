@@ -174,6 +174,7 @@ def test_a_header_that_contradicts_an_option_is_refused(head, words, tmp_path, c
         "ACC IN M/S/S NPTS 403 DT 0.01", "Units: m/sec^2", "PEAK ACC 115.2 CM/S2 AT 4.3 S", "ALTITUDE IN M 250",
         "PGV (cm/s): 12.3", "Height above sea in m", "dt 10 ms, 403 values", "Sampling frequency 100 Hz",
         "in g and in m/s2: the second", "STATION MM G", "time interval .01",
+        "DT 1/100 s", "SAMPLING RATE 0.01 SEC", "sampling interval (ms) = 1.0E1", "Units: Gal or m/s2",
     ],
 )  # fmt: skip
 def test_a_header_that_agrees_or_tells_of_others_is_read(head, tmp_path):

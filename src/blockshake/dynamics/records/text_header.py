@@ -13,7 +13,7 @@ _IN = re.compile(r"\bin\s+$", re.IGNORECASE)
 _VALUE_BEFORE, _VALUE_BEHIND = re.compile(r"\d\s*[\[(]?$"), re.compile(r"^\s*[:=]?\s*[-+.]?\d")
 _PEAK = re.compile(r"\b(?:peak|max\w*|min\w*|pg[avd])\b", re.IGNORECASE)
 _DISPLACED = re.compile(r"\bdis(?:p\w*)?\b", re.IGNORECASE)
-_NUMBER = r"(\d+\.?\d*(?:[EeDd][-+]?\d+)?|\.\d+(?:[EeDd][-+]?\d+)?)"
+_NUMBER = r"(\d+\.?\d*(?:[EeDd][-+]?\d+)?|\.\d+(?:[EeDd][-+]?\d+)?)(?![\d/])"
 _STEP = re.compile(
     rf"\b(?:dt|delta[ -]?t|(?:time|sampling)\s+(?:step|interval))\b[\s:=]*(?:[\[(]\s*(\w+)\s*[\])])?[\s:=]*{_NUMBER}"
     r"\s*(ms\b|msec|milli)?",
@@ -88,11 +88,10 @@ def _units(line):
 
 
 def _steps(line):
-    """Every step that a line states [s]; of a rate, its inverse."""
+    """Every step that a line states [s]; of a rate, its inverse, or itself below 1, where it is a step."""
     for match in _STEP.finditer(line):
         thousandths = match[3] or (match[1] or "").lower().startswith("m")
         yield (1e-3 if thousandths else 1.0) * float(plain_number(match[2]))
     for match in _RATE.finditer(line):
         rate = float(plain_number(match[1]))
-        if rate > 0.0:
-            yield 1.0 / rate
+        yield 1.0 / rate if rate > 1.0 else rate
