@@ -59,7 +59,7 @@ def diagnose(
     Examples
     --------
     >>> import blockshake
-    >>> verdict = blockshake.diagnose("my-tests", "my-diagnosis", effort="quick")
+    >>> verdict = blockshake.diagnose("my-tests", "my-diagnosis", effort="quick", say=str)
     >>> verdict.decision in ("none", "named", "ambiguous", "combination", "unknown")
     True
     """
