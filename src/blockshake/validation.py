@@ -90,6 +90,8 @@ def _in_words(error, schema):
         return refusal.expected
     if error["type"] == "missing":
         return "missing key"
+    if error["type"] == "extra_forbidden" and str(error["loc"][-1]).lower() == "true":
+        return "unknown key; other programs read an on without quotes as true: write on"
     if error["type"] == "invalid_key":
         return f"a key of letters was expected; {_POINT}"
     if error["type"] == "extra_forbidden":

@@ -67,6 +67,8 @@ def _set(mapping, path, value):
     [
         (("colour",), "red", "colour: unknown key"),
         (("bodies", 1, "colour"), 1, "bodies.lower.colour: unknown key"),
+        # what a program of YAML 1.1 makes of on
+        (("bodies", 1, "true"), "slab", "bodies.lower.true: unknown key; other programs read an on without quotes as"),
         (("bodies", 1), {"name": "lower", "material": "stone", "position": [0, 0, 1]},
          "bodies.lower.shape: missing key"),
         (("bodies", 2, "position"), [0.0, 0.0, 2.395],

@@ -15,6 +15,7 @@ from blockshake.files import HOME, load_yaml
 from blockshake.geometry.structure import load_structure
 from blockshake.measurement.motion.body_poses import PLANAR, body_poses
 from blockshake.own_files.commands import file_schema
+from blockshake.own_files.keys import key_rows
 from blockshake.own_files.templates import write_template
 
 SHIPPED = {
@@ -146,3 +147,12 @@ def test_a_folder_that_is_neither_a_campaign_nor_records_is_called_so(tmp_path, 
         "expected a campaign, or a folder of records alone; it has no campaign.yaml"
         in capsys.readouterr().err
     )
+
+
+@pytest.mark.parametrize("kind", ["import", "campaign"])
+def test_the_scale_of_a_test_has_no_default(kind):
+    """A test with a motion needs it, one without has none to multiply."""
+    (row,) = [row for row in key_rows(kind) if row[0] == "tests[].scale"]
+    assert row == (
+        "tests[].scale", "number", "1", "see meaning", "multiplies the motion; needed where there is one; not 0",
+    )  # fmt: skip

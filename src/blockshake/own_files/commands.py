@@ -152,7 +152,8 @@ def _import_campaign(options):
     else:
         import_map, where = _map_of_options(options, given, columns), _MADE
     print("\n".join(make_campaign(import_map, options.output, where)))
-    print(f"{options.output}: {len(import_map.tests)} tests imported")
+    count = len(import_map.tests)
+    print(f"{options.output}: {'1 test' if count == 1 else f'{count} tests'} imported")
 
 
 def _map_of_options(options, given, columns):

@@ -224,7 +224,7 @@ def _read_readings(test, import_map, structure, where):
         time_acc = time_acc + test.accelerometers_offset
         dropped = dropouts(read)
         read[dropped] = np.nan
-        lost += _dropped_lines(sensors, dropped, time_acc)
+        lost += _dropped_lines(sensors, dropped, time_acc - time[0])
         if kind == "displacement":
             for column, key in zip(read.T, sensors, strict=True):
                 noise = import_map.sensors.transducer_noise
@@ -279,7 +279,7 @@ def _displacements(test, keys, posed, import_map, where):
         time,
         found,
         [f"{name}: {lost_words(rows, time - time[0])}" for name, rows in lost.items()]
-        + _dropped_lines(keys, dropped, time),
+        + _dropped_lines(keys, dropped, time - time[0]),
         starts,
         remarks,
     )
@@ -295,9 +295,9 @@ def _places(starts, nominal):
 
 
 def _dropped_lines(names, dropped, time):
-    """A line on each column that read 0 for moments, by the mask (n_times, n_columns)."""
+    """A line on each column that read 0 for moments, by the mask (n_times, n_columns); times from the first reading."""
     columns = zip(names, dropped.T, strict=True)
-    return [f"{name}: {dropped_words(rows, time - time[0])}" for name, rows in columns if rows.any()]
+    return [f"{name}: {dropped_words(rows, time)}" for name, rows in columns if rows.any()]
 
 
 def _zeros_of_lost(keys, readings):

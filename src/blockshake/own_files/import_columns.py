@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from blockshake.dynamics.records.times import check_increase
+from blockshake.dynamics.records.times import check_increase, gaps_words
 from blockshake.errors import InputError
 from blockshake.measurement.campaigns.clocks import LACKING, missing_rows
 from blockshake.measurement.campaigns.faulty_readings import stuck
@@ -171,7 +171,7 @@ def _clock(table, entry, place, import_map, where):
             where, "fill_gaps",
             f"{table.source}: line {table.lines[row + 1]}, {name}: expected an even clock; {steps[row]:.4g} s after "
             f"{time[row]:.13g} s lie between two rows {np.median(steps):.4g} s apart elsewhere, "
-            f"{np.count_nonzero(missing)} such gaps in all: fill_gaps makes them gaps of the readings",
+            f"{gaps_words(missing)} in all: fill_gaps makes them gaps of the readings",
         )  # fmt: skip
     return time
 

@@ -279,7 +279,7 @@ TABLES = [
     ("t.csv", table().replace(f",{CM[3]:.3f}\n", ",nan\n"), (*TABLE, "g"), "line 5, a: expected a finite number"),
     ("t.csv", table(times=[*TIMES[:9], *TIMES[8:-1]]), (*TABLE, "g"), "line 11, t: expected times that increase"),
     ("t.csv", table(times=[*TIMES[:9], *(f"{float(at) + 3.0:.2f}" for at in TIMES[9:])]), (*TABLE, "g"),
-     "line 11, t: expected rows 0.01 s apart as elsewhere; 3.01 s after 0.08 s have none, 1 such gaps in all"),
+     "line 11, t: expected rows 0.01 s apart as elsewhere; 3.01 s after 0.08 s have none, 1 such gap in all"),
     *(("t.csv", table(names=("t", name)), ("--time", "t", "--column", f"x={name}", "--unit", "cm/s2"),
        f"column '{name}': expected cm/s2; the header states {unit}")
       for unit, names in (("g", ("acc_g", "acc/g", "acc g", "acc - g", "acc=g", "a{g}", "a<g>")), ("cm/s", ("v cm/s",)),

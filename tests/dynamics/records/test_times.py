@@ -36,7 +36,7 @@ def test_times_without_a_gap_pass(name):
 def test_a_gap_of_seconds_is_refused(name):
     time = EVEN[name].copy()
     time[400:] = np.round(time[400:] + 3.0, 9)
-    with pytest.raises(InputError, match=r"f.csv: line 402, t: expected rows .*, 1 such gaps in all"):
+    with pytest.raises(InputError, match=r"f.csv: line 402, t: expected rows .*, 1 such gap in all"):
         check(time)
 
 

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from resting_stack import MARKERS, NOISE, resting_stack, write_campaign
+from resting_stack import MARKERS, MOTION, NOISE, PLACES, STRUCTURE, resting_stack, write_campaign
+from scipy.spatial.transform import Rotation
 
 from blockshake.dynamics.motion import ground_motion
 from blockshake.dynamics.records.contract_csv import write_motion_csv
@@ -160,6 +161,44 @@ def test_what_is_odd_but_usable_is_remarked(what, tmp_path):
     assert [line for line in lines if re.search(remark, line)], lines
 
 
+def _turned(angle, swapped):
+    """Blocks that turn by an angle [rad] over 2 s, about z, or about y with y and z of their markers exchanged."""
+
+    def spoil(test):
+        moved, time = test["marker_displacement"], test["time"].to_numpy()
+        swell = angle * np.sin(0.5 * np.pi * np.clip((time - 4.0) / 2.0, 0.0, 1.0)) ** 2
+        turns = Rotation.from_rotvec(
+            swell[:, None] * np.array([0.0, 1.0, 0.0] if swapped else [0.0, 0.0, 1.0])
+        )
+        for body in ("block-1", "block-2", "block-3"):
+            mine = [place for place in BLOCKS if MARKERS[place].startswith(f"{body}-")]
+            for place in mine:
+                arm = PLACES[place] - STRUCTURE.centroid[STRUCTURE.body_names.index(body)]
+                turned = turns.apply(arm) - arm
+                moved[:, place] += turned[:, [0, 2, 1]] if swapped else turned
+
+    return spoil
+
+
+@pytest.mark.parametrize(("swapped", "count"), [(False, 0), (True, 1)])
+def test_blocks_that_turn_about_z_are_not_taken_for_swapped_axes(swapped, count, tmp_path):
+    """A turn by 5 degrees moves markers 0.4 m from the centre by 35 mm along y; z is noise alone."""
+    lines = _lines(tmp_path, _turned(np.deg2rad(5.0), swapped))
+    assert sum("are y and z swapped?" in line for line in lines) == count, lines
+
+
+def test_rounded_readings_that_stand_at_rest_have_the_noise_of_their_rounding(tmp_path):
+    """Readings to 0.1 mm of a table without noise: rounding has 0.1 mm / sqrt(12) = 0.0289 mm."""
+
+    def rounded(test):
+        values = test["marker_displacement"].to_numpy()
+        values[..., 0] = MOTION.evaluate(test["time"].to_numpy())[:, :1]
+        values[..., 1:] = 0.02 * values[..., :1]
+        test["marker_displacement"][:] = np.round(values - values[0], 4)
+
+    assert "marker noise 0.0289 mm in the quiet" in _lines(tmp_path, rounded)[1]
+
+
 @pytest.mark.parametrize("role", ["fit", "sealed"])
 @pytest.mark.parametrize(
     ("factor", "said"),
@@ -197,6 +236,24 @@ def test_rows_that_are_missing_are_remarked_with_time_and_length(tmp_path):
     test = resting_stack().isel(time_acc=np.r_[0:512, 1024 : test.sizes["time_acc"]])
     lines = campaign_lines(write_campaign(tmp_path, test))
     assert any("  t1: no accelerometer reads anything for 1 s after 0.99" in line for line in lines), lines
+
+
+def test_times_of_remarks_count_from_the_first_reading(tmp_path):
+    """The command begins 1.5 s after it, the clock shows 100 s; gap and lost marker begin 4 s after the first one."""
+    test = resting_stack()
+    values = test["marker_displacement"].to_numpy()
+    values[300:, :, 0] += np.roll(values[..., 0], 300, axis=0)[300:] - values[300:, :, 0]
+    values[:300, :, 0] = np.random.default_rng(8).normal(0.0, NOISE, (300, len(MARKERS)))
+    values[800:820, 3] = 0.5
+    values[1000:1030] = np.nan
+    test = test.drop_vars("accelerometer").drop_dims("time_acc")
+    lines = campaign_lines(write_campaign(tmp_path, test.assign_coords(time=test["time"] + 100.0)))
+    assert "1 test; stated noise of markers 0.1 mm" in lines[0]
+    assert f"  t1: lost by the cameras at 4 s, 20 readings, taken as gaps: {MARKERS[3]}" in lines
+    assert any(
+        re.match(r"  t1: no marker of a slab reads anything for 0\.155 s after 4\.99\d s", line)
+        for line in lines
+    )
 
 
 def _swap(test):

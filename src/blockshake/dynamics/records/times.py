@@ -44,9 +44,15 @@ def check_times(time, columns, lines, where, name, row="line"):
         raise InputError(
             where, f"{row} {lines[index + 1]}, {name}",
             f"expected rows {np.median(steps):.4g} s apart as elsewhere; {steps[index]:.4g} s after "
-            f"{time[index]:.13g} s have none, {int(wide.sum())} such gaps in all, and a quarter of the mean period is "
+            f"{time[index]:.13g} s have none, {gaps_words(wide)} in all, and a quarter of the mean period is "
             f"{quarter:.2g} s: write the rows that are missing, or split the motion",
         )  # fmt: skip
+
+
+def gaps_words(wide):
+    """Number of gaps in words, by a mask or a number of rows for each two neighbours (n_times - 1,)."""
+    count = np.count_nonzero(wide)
+    return "1 such gap" if count == 1 else f"{count} such gaps"
 
 
 def gap_words(time):
@@ -57,7 +63,7 @@ def gap_words(time):
     steps, index = np.diff(time), int(np.argmax(wide))
     return (
         f"rows are missing: {steps[index]:.4g} s after {time[index]:.13g} s have none, where others are "
-        f"{np.median(steps):.4g} s apart; {int(wide.sum())} such gaps in all, bridged by lines"
+        f"{np.median(steps):.4g} s apart; {gaps_words(wide)} in all, bridged by lines"
     )
 
 

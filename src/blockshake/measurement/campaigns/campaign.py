@@ -41,7 +41,13 @@ class CommandedTest(Strict):
         description="commanded motion: a shipped name, or a file in the folder; none of a body that is filmed over a "
         "ground at rest",
     )
-    scale: Scale = Field(1.0, description="multiplies the motion, with which it is needed; not 0 [1]")
+    scale: Scale = Field(
+        1.0,
+        description="multiplies the motion; needed where there is one; not 0 [1]",
+        json_schema_extra=lambda entry: entry.pop(
+            "default"
+        ),  # which holds without a motion, where nothing reads it
+    )
     baseline: Baseline = AUTO
     role: Literal["fit", "select", "sealed"] = Field(
         description="what the test may be used for: to fit, to choose between models, or to judge a frozen one"
@@ -97,7 +103,7 @@ class Campaign(Shown):
     table: Path | None = None  # the CSV table that lists them, where one does
 
     def _words(self):
-        return f"{self.name}: {len(self.tests)} tests of {self.structure}"
+        return f"{self.name}: {self.counted} of {self.structure}"
 
     def _rows(self):
         keys = ("name", "motion", "scale", "role", "file", "outcome")
@@ -107,6 +113,11 @@ class Campaign(Shown):
     def kind(self) -> CampaignKind:
         """Base motion, no base motion, or outcomes alone: how the campaign is checked and diagnosed."""
         return kind_of(self.tests.values())
+
+    @property
+    def counted(self) -> str:
+        """Number of tests in words."""
+        return "1 test" if len(self.tests) == 1 else f"{len(self.tests)} tests"
 
     @property
     def open(self) -> dict[str, MeasuredTest]:

@@ -92,7 +92,7 @@ def dropouts(values):
 
 
 def dropped_words(rows, time):
-    """When a channel read 0, by the mask and the times of its readings (n_times,) [s]."""
+    """When a channel read 0, by the mask and the times of its readings since the markers' first one (n_times,) [s]."""
     return f"0 between readings far from it, first at {time[np.argmax(rows)]:.4g} s ({rows.sum()} in all)"
 
 
@@ -136,7 +136,7 @@ def without_faulty(test, structure):
             sensor = names[fault.column // each]
             faulty.append(Faulty(sensor, columns[fault.column], fault.kind, value, fault.p, words))
         for column in np.flatnonzero(dropped.any(axis=0)):
-            words = dropped_words(dropped[:, column], test[clock].to_numpy())
+            words = dropped_words(dropped[:, column], (test[clock] - test["time"][0]).to_numpy())
             faulty.append(Faulty(names[column // each], columns[column], "dropped", 0.0, 0.0, words))
         for fault in faults:
             values[fault.rows, fault.column] = np.nan

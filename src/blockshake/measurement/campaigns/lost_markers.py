@@ -43,7 +43,7 @@ def without_lost(test, structure):
         known = np.isfinite(values[:, column]).any(axis=1)
         lost = _off_the_chain(values[:, column], known, time, speed) | frozen[:, column]
         if lost.any():
-            faulty.append(Faulty(str(name), str(name), "lost", 0.0, 0.0, lost_words(lost, time)))
+            faulty.append(Faulty(str(name), str(name), "lost", 0.0, 0.0, lost_words(lost, time - time[0])))
             values[lost, column] = np.nan
     return test.assign({readings.name: readings.copy(data=values)}).assign_attrs(faulty=tuple(faulty))
 
@@ -114,7 +114,7 @@ def _frozen(values):
 
 
 def lost_words(lost, time):
-    """When a marker was lost, by the mask and the times of its readings (n_times,) [s]."""
+    """When a marker was lost, by the mask and the times of its readings since the first one (n_times,) [s]."""
     begins = time[np.flatnonzero(lost & ~np.concatenate([[False], lost[:-1]]))]
     times = ", ".join(f"{one:.4g}" for one in begins[:_SPELT])
     more = f" s and {len(begins) - _SPELT} times more" if len(begins) > _SPELT else " s"

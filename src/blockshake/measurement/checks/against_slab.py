@@ -30,7 +30,6 @@ _LOW_PART = 0.2  # of the slab's largest displacement along x: till then blocks 
 _CARRIED = (0.2, 2.0)  # of the slab's displacement, by which blocks move in the low part; 0.4 to 1.1 in data/
 _SEEN_READING = 10.0  # times the noise of a reading, that a displacement must reach to be judged
 _FEWEST = 20  # readings
-_SIDEWAYS = 3.0  # times the motion along z, that blocks shaken along x do not move along y
 
 
 def clock_remarks(time, marker, time_acc, acceleration, noise, path, moved=False):
@@ -155,15 +154,6 @@ def carried_remarks(time, readings, names, slab, noise):
         remarks.append(
             f"{wrong[0]} (x, y, z) of the slab's x while that is below {1e3 * _LOW_PART * largest:.2g} mm, "
             f"expected near 1, 0, 0{more}"
-        )
-    spread = [
-        np.sqrt(np.mean(part[np.isfinite(part)] ** 2 if np.isfinite(part).any() else 0.0))
-        for part in np.moveaxis(readings, -1, 0)
-    ]
-    if np.isfinite(readings[..., 2]).any() and spread[1] > max(_SIDEWAYS * spread[2], _SEEN_READING * noise):
-        remarks.append(
-            f"the blocks move by {1e3 * spread[1]:.2g} mm along y and {1e3 * spread[2]:.2g} mm along z (rms): "
-            "are y and z swapped?"
         )
     return remarks
 

@@ -27,6 +27,7 @@ from blockshake.measurement.checks.quiet_noise import (
     check_unit,
     displacement_remarks,
     marker_noise,
+    rounding_noise,
 )
 from blockshake.measurement.motion.fall import find_fall
 from blockshake.measurement.sensors.accelerometers import shaken_channels
@@ -67,7 +68,7 @@ def shaken_lines(campaign):
     """Lines of a campaign with base motion and readings, see `campaign_lines`."""
     structure = load_structure(campaign.structure)
     lines = [
-        f"campaign {campaign.name} on {campaign.structure}: {len(campaign.tests)} tests; stated noise of markers "
+        f"campaign {campaign.name} on {campaign.structure}: {campaign.counted}; stated noise of markers "
         f"{1e3 * campaign.sensors.marker_noise:g} mm, of accelerometers {campaign.sensors.accelerometer_noise:g} m/s2"
     ]
     if structure.file.displacement_transducers:
@@ -86,8 +87,9 @@ def shaken_lines(campaign):
         remarks += [f"  {entry.name}: {remark}" for remark in described.remarks]
         fall = find_fall(test, structure, campaign.sensors) if entry.role != "sealed" else None
         if fall:
+            fell = fall.time - float(test["time"][0])
             remarks.append(
-                f"  {entry.name}: {fall.body} falls at {fall.time:.2f} s; a diagnosis reads the test until then"
+                f"  {entry.name}: {fall.body} falls at {fell:.2f} s; a diagnosis reads the test until then"
             )
     if tests:
         found = found_noise(tests, structure, campaign.sensors)
@@ -152,11 +154,11 @@ class _Described:
             self.remarks.append("the marker times are not even")
         for name, mine in (("slab", self.on_slab), ("block", ~self.on_slab)):
             self.remarks += _silence(
-                f"marker of a {name}", time, self.readings[:, mine].reshape(len(time), -1)
+                f"marker of a {name}", time - time[0], self.readings[:, mine].reshape(len(time), -1)
             )
         if "accelerometer" in test:
             read = test["accelerometer"].transpose("time_acc", "channel").to_numpy()
-            self.remarks += _silence("accelerometer", test["time_acc"].to_numpy(), read)
+            self.remarks += _silence("accelerometer", test["time_acc"].to_numpy() - time[0], read)
 
     def _quiet_end(self):
         """Time before which nothing moves, by the command or, where that is not at hand, by habit [s]."""
@@ -171,7 +173,8 @@ class _Described:
         """Noise of every channel against what is stated, and where displacements start."""
         names, stated = self.test["marker"].values, self.sensors.marker_noise
         quiet = self.time < quiet_end
-        noise = marker_noise(self.readings[quiet])
+        changing = marker_noise(self.readings[quiet])
+        noise = np.maximum(changing, rounding_noise(self.readings))
         if np.isfinite(noise).any():
             check_unit(names, noise, stated, self.path)
             usual = np.sqrt(np.nanmean(noise**2))
@@ -181,7 +184,7 @@ class _Described:
             self.remarks += displacement_remarks("marker", names, noise, stated)
             columns = [f"{name}.{axis}" for name in names for axis in AXES]
             read = self.readings.reshape(len(self.readings), -1)
-            self.remarks += multiples(columns, read) if usual > 0.0 else []
+            self.remarks += multiples(columns, read) if np.nanmax(changing) > 0.0 else []
             self._hold_start(quiet)
         else:
             self.facts.append("no quiet start to find the noise in")
@@ -191,7 +194,8 @@ class _Described:
         if "transducer_displacement" in self.test:
             read = self.test["transducer_displacement"].transpose("time_acc", "transducer")
             names, stated = read["transducer"].values, self.sensors.transducer_noise
-            noise = marker_noise(read.to_numpy()[quiet.to_numpy(), :, None])
+            values = read.to_numpy()[..., None]
+            noise = np.maximum(marker_noise(values[quiet.to_numpy()]), rounding_noise(values))
             check_unit(names, noise, stated, self.path)
             self.remarks += displacement_remarks("displacement transducer", names, noise, stated)
             self.remarks += multiples(names, read.to_numpy())
@@ -280,7 +284,10 @@ def multiples(columns, readings):
 
 
 def _silence(name, time, readings):
-    """Remark on the longest gap of all readings (n_times, n_readings) of an instrument at once."""
+    """Remark on the longest gap of all readings (n_times, n_readings) of an instrument at once.
+
+    ``time`` (n_times,) counts from the first reading of the markers, as in all remarks [s].
+    """
     read = np.flatnonzero(np.isfinite(readings).any(axis=1))
     rows = np.diff(read)
     if not len(rows) or rows.max() <= _SILENT:

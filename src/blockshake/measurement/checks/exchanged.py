@@ -14,6 +14,7 @@ _LEAST = 2e-3  # m rms against the slab, of a block that is looked at
 _LESS = 0.7  # of the lower block's motion against the slab; blocks that rock together have 1.1 and more
 _MOST_ROWS, _MISFIT = 200, 5.0  # times the noise of a reading, of a misfit that is looked at
 _FITS = 0.3  # of the misfit to a rigid body
+_ASIDE = 3.0  # times the motion along z, that blocks shaken along x do not move along y
 _CLOSER = 0.25  # of the slab's mean square deviation from the command
 
 
@@ -41,6 +42,7 @@ def exchange_remarks(test, structure, sensors, target):
     whole = until_fall(test, find_fall(test, structure, sensors)).sizes["time"]
     free = [body for body in range(len(names)) if not structure.driven[body]]
     fit = joint_fit(structure, poses.position[:whole], poses.rotation[:whole])
+    remarks += _aside(test.isel(time=slice(whole)), structure, poses, noise)
     remarks += _not_rigid(test.isel(time=slice(whole)), structure, poses, noise)
     found = exchanged_bodies(
         fit, [body for body in free if np.isfinite(poses.rotation[:, body]).any()], noise
@@ -80,6 +82,31 @@ def _not_rigid(test, structure, poses, noise):
                     f"{one} moves as {other} should: are the two exchanged? Others are then on a rigid body"
                 ]
     return []
+
+
+def _aside(test, structure, poses, noise):
+    """A remark on blocks that move along y far more than along z, unless one is rigid only as the axes are."""
+    names, on = test["marker"].values, np.array(marker_bodies(structure, test["marker"].values))
+    free = [name for body, name in enumerate(structure.body_names) if not structure.driven[body]]
+    read = test["marker_displacement"].transpose("time", "marker", "axis").to_numpy()[:, np.isin(on, free)]
+    known = np.isfinite(read)
+    squares = np.where(known, read, 0.0) ** 2
+    rms = np.sqrt(squares.sum(axis=(0, 1)) / np.maximum(known.sum(axis=(0, 1)), 1))
+    if not known[..., 2].any() or rms[1] <= max(_ASIDE * rms[2], ABOVE_NOISE * noise):
+        return []
+    rows = np.unique(np.linspace(0, test.sizes["time"] - 1, _MOST_ROWS).astype(int))
+    few = test.isel(time=rows)
+    swapped = few.assign(marker_displacement=few["marker_displacement"].copy())
+    swapped["marker_displacement"].loc[{"marker": names[np.isin(on, free)]}] = (
+        few["marker_displacement"].sel(marker=names[np.isin(on, free)], axis=["x", "z", "y"]).to_numpy()
+    )
+    for name in free:
+        if poses.known[structure.body_names.index(name)] == POSE:
+            other = _misfit(swapped, structure, name, noise)
+            if other > _MISFIT * noise and _misfit(few, structure, name, noise) < _FITS * other:
+                return []
+    return [f"the blocks move by {1e3 * rms[1]:.2g} mm along y and {1e3 * rms[2]:.2g} mm along z (rms): "
+            "are y and z swapped?"]  # fmt: skip
 
 
 def _misfit(test, structure, body, noise):

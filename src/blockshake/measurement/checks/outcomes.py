@@ -40,7 +40,7 @@ def outcome_lines(campaign):
         raise InputError(campaign.folder / "campaign.yaml", "tests", wrong)
     fell = sum(test.outcome == "fell" for test in opened)
     lines = [
-        f"campaign {campaign.name} on {campaign.structure}: {len(campaign.tests)} tests of which the outcome alone is "
+        f"campaign {campaign.name} on {campaign.structure}: {campaign.counted} of which the outcome alone is "
         f"known; open: {fell} fell, {len(opened) - fell} stood; {len(campaign.sealed)} are sealed"
     ]
     for name, test in campaign.tests.items():

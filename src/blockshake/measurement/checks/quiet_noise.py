@@ -28,6 +28,17 @@ def marker_noise(readings):
         return np.where(count >= _FEWEST, np.sqrt(total.sum(axis=(0, 2)) / count / 2.0), np.nan)
 
 
+def rounding_noise(readings):
+    """Standard deviation of the rounding of each marker's readings [m], (n_markers,): of their last digit over root 12.
+
+    The last digit is the least change of the readings (n_times, n_markers, 3) over a whole test [m]. Noise far below
+    it does not show at rest.
+    """
+    steps = np.abs(np.diff(readings, axis=0))
+    digit = np.where(steps > 0.0, steps, np.inf).min(axis=(0, 2))
+    return np.where(np.isfinite(digit), digit, 0.0) / np.sqrt(12.0)
+
+
 def check_unit(names, noise, stated, path):
     """Refuse markers and transducers with the noise of readings in millimetres, the only trace where nothing moves.
 
@@ -83,8 +94,8 @@ def _remark(what, names, noise, wrong, factor, unit, stated):
     if not wrong.any():
         return []
     size = f"{factor * noise[wrong].min():.3g}"
-    if wrong.sum() > 1 and factor * noise[wrong].max() > factor * noise[wrong].min():
-        size += f" to {factor * noise[wrong].max():.3g}"
+    largest = f"{factor * noise[wrong].max():.3g}"
+    size += f" to {largest}" if largest != size else ""
     shown = [str(name) for name in np.asarray(names)[wrong]]
     of = "" if len(shown) == len(noise) else f" of {', '.join(shown[:_MANY])}"
     of += f" and {len(shown) - _MANY} more" if of and len(shown) > _MANY else ""
