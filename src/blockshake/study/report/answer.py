@@ -9,7 +9,6 @@ from blockshake.pages.wording import (
     MISSING,
     SQUARED,
     given,
-    millimetre_range,
     model_label,
     number,
     parameter_label,
@@ -155,7 +154,9 @@ def _facts(stripes, found, shown, theory):
         (
             "Largest displacement on the slab, median run by model",
             by_level("peak", length, "mm"),
-            _WORDS.displacement(case=case, one=far, farther=_farther(found, shown, far)),
+            _WORDS.displacement(
+                case=case, one=far, farther=_farther(found, shown, max(one.peak for one in of_case))
+            ),
         ),
         (
             "Margin against overturning, median run by model",
@@ -170,8 +171,8 @@ def _used(ended, theory):
     return {theory.borne_out: ended[theory.borne_out]} if theory and theory.borne_out else evidence(ended)
 
 
-def _farther(found, shown, far):
-    """Another case whose best evidence moves a block farther: its name and `Outcome`; None without."""
+def _farther(found, shown, reached):
+    """Another case whose best evidence moves a block farther than a displacement [m]: name and `Outcome`, or None."""
     of_others = [
         (one.peak, name, one)
         for name, ended in found.items()
@@ -179,7 +180,7 @@ def _farther(found, shown, far):
         if not name.startswith(shown.case.name)
     ]
     peak, name, one = max(of_others, default=(0.0, "", None), key=lambda item: item[0])
-    return {"name": name, "one": one} if peak > far.peak else None
+    return {"name": name, "one": one} if peak > reached else None
 
 
 def _leaves(of_case):
@@ -286,7 +287,7 @@ def _intensities(content):
     ladders = [
         {
             "name": name,
-            "drift": millimetre_range(one["largest_drift"]),
+            "drift": span([float(limit) for limit in one["largest_drift"].values.flat if np.isfinite(limit)]),
             "fell": bool(np.isin(one["status"].values, FALLEN).any()),
             "median": float(one["median"]),
             "dispersion": float(one["dispersion"]),
