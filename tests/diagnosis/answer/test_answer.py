@@ -171,8 +171,12 @@ def test_the_slab_s_rotation_and_its_vertical_motion_are_judged_apart():
 def test_the_size_of_a_force_without_form_is_its_standard_deviation(monkeypatch):
     gains = {300.0: 1.0, 1e3: 8.0, 3e3: 6.0, 1e4: 2.0}  # by size [N]
     rows = [np.array([700.0, -400.0]), np.array([50.0])]
-    monkeypatch.setattr(free_force, "_with_force", lambda likelihood, points, size: (gains[size], rows))
-    best = free_force.explain_free_force(None, SimpleNamespace(place="block-1")).best
+    monkeypatch.setattr(
+        free_force, "_with_force", lambda likelihood, points, columns, size: (gains[size], [], [])
+    )
+    monkeypatch.setattr(free_force, "_posterior_mean", lambda *arguments: rows)
+    likelihood = SimpleNamespace(keeping=lambda key, compute: [])
+    best = free_force.explain_free_force(likelihood, SimpleNamespace(place="block-1")).best
     assert best.mean == [1e3]
     for column, expected in zip(best.columns, rows, strict=True):
         np.testing.assert_allclose(column @ best.mean, expected)

@@ -220,8 +220,8 @@ def test_a_track_record_of_an_earlier_program_is_called_so(fakes, pages):
 def test_track_record_is_two_lines_for_a_reader_and_where_all_figures_are(pages, documents):
     (lines,) = blocks_of(documents["named"], "items", "track-record")
     assert lines.items == (
-        "False alarms: 1 of 30 campaigns in which nothing was hidden (95 % limits 0 to 17 %; goal at most 5 %, which "
-        "so few do not show).",
+        "False alarms: 1 of 30 campaigns in which nothing was hidden (95 % limits 0 to 17 %; goal at most 5 %, too "
+        "few to show it).",
         "Effects named, or listed with others: 5 of 6 that the tests can show (95 % limits 36 to 100 %; goal at least "
         "88 %, missed).",
     )
