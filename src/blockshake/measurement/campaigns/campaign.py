@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from os.path import isfile  # false, not an error, for a name that no file can have
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
@@ -32,6 +32,11 @@ def _not_zero(value):
 Scale = Annotated[Finite, AfterValidator(_not_zero)]
 
 
+def _no_default(schema: dict[str, Any]) -> None:
+    """Take the default out of a key's schema: it holds without a motion, where nothing reads the key."""
+    schema.pop("default")
+
+
 class CommandedTest(Strict):
     """The command of one test, and the use that may be made of it."""
 
@@ -44,9 +49,7 @@ class CommandedTest(Strict):
     scale: Scale = Field(
         1.0,
         description="multiplies the motion; needed where there is one; not 0 [1]",
-        json_schema_extra=lambda entry: entry.pop(
-            "default"
-        ),  # which holds without a motion, where nothing reads it
+        json_schema_extra=_no_default,
     )
     baseline: Baseline = AUTO
     role: Literal["fit", "select", "sealed"] = Field(
