@@ -20,7 +20,6 @@ from hollow_faces import hollow_rows
 from measured import wrapped
 from recorded_lmgc90 import SPEED_HEADER, speed_rows
 from schedule import measured, shares
-from shear_damping import HEADER as SHEAR_HEADER
 from shear_damping import shear_damping_rows, shear_damping_words
 from the_paper import HEADER, count_words, judge_statements
 
@@ -114,11 +113,8 @@ def statements(study):
     if content is None:
         return None
     found = judge_statements(content)
-    lines = _study_words(content, count_words(found))
-    for heading, rows in found.items():
-        short = [(*row[:-1], _shortened(row[-1])) for row in rows]
-        lines += ["", f"### {heading}", "", markdown(HEADER, short)]
-    return "\n".join(lines)
+    short = [(*row[:-1], _shortened(row[-1])) for row in found]
+    return "\n".join([*_study_words(content, count_words(found)), "", markdown(HEADER, short)])
 
 
 def _shortened(words):
@@ -195,12 +191,6 @@ def joint_calibration():
     return markdown(table.header, table.rows)
 
 
-def shear_damping():
-    """Table of twins by the damping of the shear springs, and how often it keeps them together."""
-    rows = shear_damping_rows()
-    return f"{markdown(SHEAR_HEADER, rows)}\n\n{shear_damping_words(rows)}"
-
-
 def study_shares():
     """CPU time of the default study by rule; None where it has not been run."""
     if not DONE.is_file():
@@ -253,7 +243,7 @@ MAKERS = {
     "single-changes": single_changes,
     "statements": lambda: statements("study"),
     "printed-settings": printed_settings,
-    "shear-damping": shear_damping,
+    "shear-damping": lambda: shear_damping_words(shear_damping_rows()),
     "joint-calibration": joint_calibration,
     "hollow-faces": lambda: markdown(HOLLOW_HEADER, hollow_rows()),
     "face-impact-theory": lambda: markdown(THEORY_HEADER, theory_rows()),

@@ -16,15 +16,10 @@ CONFIGURATIONS = ("configuration-1", "configuration-2", "configuration-3", "conf
 SCALES = (1.0, 1.5, 2.0)
 RATIOS = (0.0, 0.1, 0.3)
 DURATION, TIME_STEP = 10.0, 5e-5  # s
-HEADER = (
-    "structure",
-    "scale",
-    *(f"ratio {ratio:g}: {what}" for ratio in RATIOS for what in ("peak [mm]", "twin [mm]")),
-)
 
 
 def shear_damping_rows():
-    """Peak of any block and largest distance of the twins, by structure, scale and ratio."""
+    """Peak of any block and largest distance of the twins [mm], a pair for each ratio, by structure and scale."""
     rows = []
     for name in CONFIGURATIONS:
         structure = load_structure(name)
@@ -32,22 +27,18 @@ def shear_damping_rows():
             cells = []
             for ratio in RATIOS:
                 one, twin = (_moved(structure, scale * factor, ratio) for factor in (1.0, 1.0 + NUDGE))
-                cells += _cells(one, twin)
-            rows.append((name, f"{scale:g}", *cells))
+                cells.append(_peak_and_twin(one, twin))
+            rows.append(cells)
     return rows
 
 
 def shear_damping_words(rows):
     """In how many of the rows twins stay nearer, and peaks differ, with a dashpot than without one."""
-    width = len(HEADER[2:]) // len(RATIOS)
     told = []
     for place, ratio in enumerate(RATIOS[1:], start=1):
-        peaks, twins = (
-            [[float(row[2 + width * which + column]) for which in (0, place)] for row in rows]
-            for column in (0, 1)
-        )
-        nearer = sum(damped < plain for plain, damped in twins)
-        moved = max(abs(damped / plain - 1.0) for plain, damped in peaks)
+        pairs = [(row[0], row[place]) for row in rows]
+        nearer = sum(damped[1] < plain[1] for plain, damped in pairs)
+        moved = max(abs(damped[0] / plain[0] - 1.0) for plain, damped in pairs)
         told.append(
             f"with a ratio of {ratio:g} the twins stay nearer in {share_words(nearer, len(rows))} cases, and the peak "
             f"changes by up to {percent(moved)} %"
@@ -66,6 +57,6 @@ def _moved(structure, scale, ratio):
     return relative_to_slab(along, driven_marker(structure)).sel(marker=markers)
 
 
-def _cells(one, twin):
-    away = np.abs(one - twin).max("marker")
-    return f"{1e3 * float(np.abs(one).max()):.1f}", number(1e3 * float(away.max()), 2)
+def _peak_and_twin(one, twin):
+    """Largest displacement, to a tenth, and largest distance, to two digits or a whole one [mm]."""
+    return round(1e3 * float(np.abs(one).max()), 1), float(number(1e3 * float(np.abs(one - twin).max()), 2))

@@ -55,7 +55,7 @@ def four(content):
 
 
 def test_every_statement_has_a_place_a_verdict_and_words(content, paper):
-    rows = [row for rows in paper.judge_statements(content).values() for row in rows]
+    rows = paper.judge_statements(content)
     assert len({row[1] for row in rows}) == len(rows)
     for place, claim, verdict, words in rows:
         assert place
@@ -68,7 +68,7 @@ def test_every_statement_has_a_place_a_verdict_and_words(content, paper):
         "no NSCD elastic"
         in words["Runs by elastic blocks deviate more from each other in configurations 3 and 4."]
     )
-    assert f"Of {len(rows)} statements: " in paper.count_words({"all": rows})
+    assert f"Of {len(rows)} statements: " in paper.count_words(rows)
 
 
 def test_steps_are_judged_by_stability_convergence_energy_and_cost(content, paper):
