@@ -218,7 +218,16 @@ def faults():
     lost = {name: times for name, times in found["lost"].items() if times}
     kinds = sorted({name.partition(": ")[2] for name in found["lost"]})
     after = markdown(("lost", "times"), lost.items()) if lost else f"0 in all tests: {', '.join(kinds)}."
-    return "\n\n".join([words, markdown(("done", "times"), found["done"].items()), wrapped(after)])
+    return "\n\n".join([words, markdown(("done", "times"), _done_to(found["done"]).items()), wrapped(after)])
+
+
+def _done_to(counts):
+    """Times that a thing was done, to each work or model in one cell; ``counts`` are by "WORK: THING" or a thing."""
+    cells = {}
+    for name, times in counts.items():
+        work, colon, done = name.partition(": ")
+        cells.setdefault(done or name, []).append(f"{work} {times}" if colon else str(times))
+    return {done: ", ".join(times) for done, times in sorted(cells.items())}
 
 
 def _items(sentences):
