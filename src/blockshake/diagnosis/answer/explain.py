@@ -11,7 +11,7 @@ from blockshake.diagnosis.answer.thresholds import ODDS
 from blockshake.diagnosis.evidence.explanation import best_of
 from blockshake.diagnosis.evidence.joint_rows import JointRows
 from blockshake.diagnosis.evidence.likelihood import from_rows
-from blockshake.diagnosis.evidence.nuisances import expected_rows, nuisance_columns
+from blockshake.diagnosis.evidence.nuisances import expected_rows, nuisances_of, possible
 from blockshake.diagnosis.evidence.row_covariance import form_error, row_covariance
 from blockshake.diagnosis.evidence.stop_search import explain_stops
 from blockshake.diagnosis.outside.blow import explain_blow
@@ -30,9 +30,9 @@ from blockshake.forces.seen.point_rows import point_rows
 NOISES = (0.75, 1.0, 1.3)  # standard deviation of the sensors over the stated one
 _IMPLAUSIBLE = 20.0  # nats below the best, from which on a noise model is dropped
 _LOOKED_AT = 4  # causes
-_FIRST_LOOK = (1.0,), ((4.0, 0.0),)
 EVERY = (*EFFECTS, *FORMS)
 DISCREPANCIES = ((1.0, 0.0), (4.0, -3.0), (16.0, -10.0))  # multiple, logarithm of its prior
+_FIRST_LOOK = 4  # number of the noise model in the middle of both
 
 
 @dataclass(frozen=True)
@@ -43,14 +43,14 @@ class Explained:
     by_key: dict
 
 
-def likelihoods(tests, noises=NOISES, discrepancies=DISCREPANCIES):
-    """`Likelihood` of tests with rows, by noise and discrepancy."""
-    nuisances = nuisance_columns(tests)
+def likelihoods(tests, nuisances):
+    """`Likelihood` of tests with rows and their `Nuisance`, by noise and discrepancy."""
     values = [test.rows.value - expected_rows(test) for test in tests]
+    columns = [one.columns for one in nuisances]
     return [
-        from_rows([row_covariance(test, noise, multiple) for test in tests], values, nuisances, prior)
-        for noise in noises
-        for multiple, prior in discrepancies
+        from_rows([row_covariance(test, noise, multiple) for test in tests], values, columns, prior)
+        for noise in NOISES
+        for multiple, prior in DISCREPANCIES
     ]
 
 
@@ -86,21 +86,24 @@ def all_tried(tests, without):
     return Tried(tests, force_points(tests), variants)
 
 
-def plausible(tried):
+def plausible(tried, nuisances):
     """Noise models within 20 nats of the best one for any leading cause of a first look.
 
-    Without a cause, a large force that nobody modelled would select the widest errors alone.
+    Without a cause, a large force that nobody modelled would select the widest errors alone. A tolerance that no
+    structure has beside the best of these causes is left out: a body of less mass needs less of any force.
     """
-    (first,) = likelihoods(tried.tests, *_FIRST_LOOK)
-    best = {}
-    for explanation in explain(first, tried).by_key.values():
+    among, kept, best, leading = likelihoods(tried.tests, nuisances), set(), {}, []
+    for explanation in explain(among[_FIRST_LOOK], tried).by_key.values():
         if explanation.cause not in best or explanation.gain > best[explanation.cause].gain:
             best[explanation.cause] = explanation
-    among, kept = likelihoods(tried.tests), set()
     for cause in sorted(best.values(), key=lambda explanation: -explanation.gain)[:_LOOKED_AT]:
-        logs = np.array([given(likelihood, tried.tests, cause).log_evidence for likelihood in among])
+        beside = [given(likelihood, tried.tests, cause) for likelihood in among]
+        logs = np.array([one.log_evidence for one in beside])
         kept |= set(np.flatnonzero(logs > logs.max() - _IMPLAUSIBLE))
-    return [among[index] for index in sorted(kept)]
+        leading.append(beside[int(logs.argmax())])
+    beside = max(leading, key=lambda one: one.log_evidence)
+    left = possible(nuisances, beside.nuisance_amplitudes[: len(nuisances)])
+    return [among[index] for index in sorted(kept)] if len(left) == len(nuisances) else plausible(tried, left)
 
 
 def explain(likelihood, tried, causes=EVERY):
@@ -255,7 +258,9 @@ def gather_evidence(seen, without=()):
     if not tests:
         return None
     tried = all_tried(tests, without)
-    return Evidence(tried, [explain(likelihood, tried) for likelihood in plausible(tried)])
+    return Evidence(
+        tried, [explain(likelihood, tried) for likelihood in plausible(tried, nuisances_of(tests))]
+    )
 
 
 @dataclass(frozen=True)

@@ -41,8 +41,13 @@ class Likelihood:
         return np.linalg.inv(np.eye(size) + self.nuisances.T @ self.nuisances)
 
     @cached_property
+    def nuisance_amplitudes(self):
+        """Amplitudes of the nuisances at their best without any cause, (n_nuisances,)."""
+        return self._inner @ (self.nuisances.T @ self.value)
+
+    @cached_property
     def _weighted(self):
-        return self.value - self.nuisances @ (self._inner @ (self.nuisances.T @ self.value))
+        return self.value - self.nuisances @ self.nuisance_amplitudes
 
     @cached_property
     def log_evidence_of_rows(self):

@@ -3,6 +3,8 @@
 Each is a column of the rows times its standard deviation, marginalised in closed form.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from blockshake.forces.joint_motion import TURNED
@@ -16,15 +18,30 @@ _BARELY = 1.5  # power of one over the rotation by which a face just opened come
 _ECCENTRIC, _MASS = 0.001, 0.025  # m; of each block's mass
 _PAIR, _JOINT, _RISE, _RISE_AT = 0.12, 0.05, 0.05, 0.03  # of the coefficient; m/s
 _SMALLEST_TURN, _MOST_RISE = 1e-5, 2.0
+_MOST_OF_MASS = (
+    0.5  # of a block's mass: a body of less mass needs less of any force, and no scale asks for this much
+)
 
 
-def nuisance_columns(tests):
-    """Columns of all nuisances by test, (n_rows,) each, times their standard deviations.
+@dataclass(frozen=True)
+class Nuisance:
+    """A tolerance of undamaged blocks."""
 
-    Those that are zero in all rows are left out.
-    """
-    columns = [*_of_edges(tests), *_of_friction(tests), *_of_masses(tests)]
-    return [column for column in columns if any(rows.any() for rows in column)]
+    columns: list  # of float64 array, shape (n_rows,); by test, times the standard deviation of the amplitude
+    most: float = (
+        np.inf
+    )  # magnitude of the amplitude in standard deviations, beyond which no structure has it
+
+
+def nuisances_of(tests):
+    """`Nuisance` of all tolerances that show in any row."""
+    every = [*map(Nuisance, _of_edges(tests)), *map(Nuisance, _of_friction(tests)), *_of_masses(tests)]
+    return [one for one in every if any(rows.any() for rows in one.columns)]
+
+
+def possible(nuisances, amplitudes):
+    """Those of some `Nuisance` whose amplitudes (n_nuisances,) a structure may have."""
+    return [one for one, size in zip(nuisances, amplitudes, strict=True) if abs(size) <= one.most]
 
 
 def expected_rows(test):
@@ -89,8 +106,8 @@ def _slides(test, faces, rows):
 
 def _of_masses(tests):
     for body in tests[0].seen.free:
-        yield [_ECCENTRIC * test.eccentric[int(body)] for test in tests]
-        yield [_MASS * test.heavier[int(body)] for test in tests]
+        yield Nuisance([_ECCENTRIC * test.eccentric[int(body)] for test in tests])
+        yield Nuisance([_MASS * test.heavier[int(body)] for test in tests], _MOST_OF_MASS / _MASS)
 
 
 def _zero(test):

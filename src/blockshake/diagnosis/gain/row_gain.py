@@ -6,6 +6,7 @@ import numpy as np
 
 from blockshake.diagnosis.answer.explain import likelihoods
 from blockshake.diagnosis.evidence.joint_rows import JointRows
+from blockshake.diagnosis.evidence.nuisances import nuisances_of, possible
 from blockshake.diagnosis.evidence.slab_motion import slab_motion, slab_turns
 from blockshake.diagnosis.nominal.ensemble import DISCREPANCY, EXTENDED, NOMINAL, RECALIBRATED
 from blockshake.diagnosis.outside.push import start_of_push
@@ -94,24 +95,33 @@ def _of_joints(decision, opened, sealed):
     tests = [*before, *after]
     if not causes or not before or not after:
         return []
-    models = likelihoods(tests)
+    nuisances = nuisances_of(tests)
+    models = likelihoods(tests, nuisances)
     explained = [cause_rows(cause, before, after, models[0]) for cause in causes]
     explained = [rows for rows in explained if rows is not None]
     if not explained:
         return []
     rows = [sum(of_test) for of_test in zip(*explained, strict=True)]
     times = [test.rows.time for test in after]
-    return [_squares(_most_probable(models, rows, len(before)), rows, len(before), times)]
+    model = _most_probable(models, rows, len(before))
+    left = possible(nuisances, _fitted(*_open_rows(model, rows, len(before))))
+    if len(left) < len(nuisances):
+        model = _most_probable(likelihoods(tests, left), rows, len(before))
+    return [_squares(model, rows, len(before), times)]
+
+
+def _open_rows(model, rows, n_open):
+    """Whitened rows of the open tests, the cause's taken off, and their nuisances."""
+    stop = model.ends[n_open]
+    return (model.value - model.whiten([one[:, None] for one in rows])[:, 0])[:stop], model.nuisances[:stop]
 
 
 def _most_probable(models, rows, n_open):
     """Noise model with the largest evidence in the open tests, the cause's rows taken off."""
 
     def log_evidence(model):
-        stop = model.ends[n_open]
-        value = (model.value - model.whiten([one[:, None] for one in rows])[:, 0])[:stop]
         spread = sum(np.log(np.diag(root)).sum() for root in model.roots[:n_open])
-        return _log_evidence(value, model.nuisances[:stop]) - spread + model.prior
+        return _log_evidence(*_open_rows(model, rows, n_open)) - spread + model.prior
 
     return max(models, key=log_evidence)
 

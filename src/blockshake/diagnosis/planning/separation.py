@@ -16,6 +16,7 @@ from blockshake.diagnosis.evidence.closed_joints import closed_joints
 from blockshake.diagnosis.evidence.explanation import best_of
 from blockshake.diagnosis.evidence.joint_rows import JointRows
 from blockshake.diagnosis.evidence.likelihood import Likelihood
+from blockshake.diagnosis.evidence.nuisances import nuisances_of
 from blockshake.diagnosis.evidence.slab_motion import slab_motion, slab_turns
 from blockshake.effects.joint_compliance import EFFECT as JOINT_COMPLIANCE
 from blockshake.effects.registry import EFFECTS
@@ -127,7 +128,7 @@ def _rows_of(seen):
     tests = [JointRows(test) for test in seen if len(test.rows.value)]
     if not tests:
         return None
-    usual = max(likelihoods(tests), key=lambda one: one.log_evidence)
+    usual = max(likelihoods(tests, nuisances_of(tests)), key=lambda one: one.log_evidence)
     return _Rows(all_tried(tests, ()), replace(usual, kept={}))
 
 
