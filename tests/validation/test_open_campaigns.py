@@ -30,6 +30,7 @@ TRUTHS = {
     "example-spring": ("named", {"base-compliance"}, None, ""),
     "example-soft-joint": ("named", {"joint-compliance"}, None, "block-1"),
     "example-eccentric": ("named", {"eccentricity"}, None, "block-3"),
+    "example-stop": ("named", {"stopper-contact"}, None, "block-3"),
     "example-vertical": ("named", {"vertical-motion"}, None, ""),
     "example-push": ("unknown", set(), "push", "block-2"),
     "example-knock": ("unknown", set(), "blow", "block-3"),
