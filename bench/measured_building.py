@@ -45,6 +45,7 @@ def _part(folder, output):
     yield f"The verdict: **{verdict['decision']}** ({verdict['word']})."
     yield "\n".join(f"- {line}" for line in causes_in_words(decision, TITLES)) or "- no cause is named"
     yield "\n".join(_table(folder, decision))
+    yield from _missed(folder, decision)
     gain = verdict["row_gain"]["recalibrated"]
     yield (
         f"Error of the forces of the sealed test that the cause removes, beyond the model recalibrated on the open "
@@ -77,6 +78,22 @@ def _table(folder, decision):
             )
             words = f"{middle:.2f} ({short:.2f} to {long:.2f})"
         yield f"| {test['name']} | {test['role']} | {1e3 * farthest:.0f} | {words} | {period:.2f} | {ratio:.2f} |"
+
+
+def _missed(folder, decision):
+    """Sentences on what the regression shows and the answer does not say."""
+    periods = {name: _regression(folder, name)[1] for name in decision.tests}
+    short, long = min(periods, key=periods.get), max(periods, key=periods.get)
+    softer = 1.0 - (periods[short] / periods[long]) ** 2
+    if not any("damping" in cause.parameters for cause in decision.causes):
+        yield (
+            "The damping is missing in the answer: a second size has to add a twentieth to what the first one explains."
+        )
+    if not any(one.changes for one in decision.histories if one.parameter == "stiffness"):
+        yield (
+            f"The answer has one stiffness for all tests. By the regression the stiffness in {long} is {softer:.0%} "
+            f"lower than in {short}, a fall within the scatter that the diagnosis allows from test to test."
+        )
 
 
 def _regression(folder, name):
