@@ -31,8 +31,12 @@ def test_a_g_in_any_writing(unit):
     assert unit_size("acceleration", unit, "here", "unit") == Decimal("9.80665")
 
 
+def test_a_tenth_of_g_as_a_network_writes_it():
+    assert unit_size("acceleration", "G/10", "here", "unit") == Decimal("0.980665")
+
+
 @pytest.mark.parametrize(
-    "unit", ["", "inch", "g/10", "10g", "G*10", "cm", "cm/s", "s", "m/s3", "0.01 g", "counts", "k"]
+    "unit", ["", "inch", "g/100", "10g", "G*10", "cm", "cm/s", "s", "m/s3", "0.01 g", "counts", "k"]
 )
 def test_other_accelerations_are_refused(unit):
     with pytest.raises(InputError, match="unit: expected a unit of acceleration"):
@@ -48,7 +52,7 @@ def test_a_unit_before_other_words():
         assert leading_unit("acceleration", text, "here", "line") == Decimal(size)
     assert leading_unit("acceleration", "(02)", "here", "line") == Decimal("9.80665")
     for text in (
-        "G X 10", "G / 10", "G * 10", "G 10", "CM PER SEC", "", "G (x 1000)", "G TIMES 10", "G MULTIPLY BY 10",
+        "G X 10", "G / 100", "G * 10", "G 10", "CM PER SEC", "", "G (x 1000)", "G TIMES 10", "G MULTIPLY BY 10",
         "G, SCALED BY 10", "G, CORRECTED, SCALE FACTOR 10", "G SF= 10", "G (10)", "cm/s^2 (02)", "G (04)",
     ):  # fmt: skip
         with pytest.raises(InputError, match="expected a unit of acceleration"):

@@ -356,7 +356,10 @@ def _blank_rows(lines, layout, path):
     for number, row in filled:
         if (layout.data or 0) <= number <= (layout.last or number) and len(row) != len(filled[0][1]):
             wrong = f"expected {len(filled[0][1])} cells between blanks as in line {filled[0][0]}, found {len(row)}"
-            wrong += f"; a line of numbers counts the columns{_seen_begin(lines, layout)}"
+            first = f", {layout.data}" if layout.data else ""
+            wrong += (
+                f"; without names the header is the first line of numbers{first}{_seen_begin(lines, layout)}"
+            )
             raise InputError(path, "header", f"line {number}: {wrong}")
     return rows
 

@@ -15,7 +15,7 @@ UNITS = {
     "velocity": {"m/s": Decimal(1), "cm/s": _CENTI, "mm/s": _MILLI},
     "acceleration": {
         "m/s2": Decimal(1), "cm/s2": _CENTI, "mm/s2": _MILLI, "gal": _CENTI, "g": STANDARD_GRAVITY,
-        "mg": STANDARD_GRAVITY * _MILLI, "%g": STANDARD_GRAVITY * _CENTI,
+        "mg": STANDARD_GRAVITY * _MILLI, "%g": STANDARD_GRAVITY * _CENTI, "g/10": STANDARD_GRAVITY * Decimal("0.1"),
     },
     "rotation": {"rad": Decimal(1), "mrad": _MILLI, "deg": _DEGREE},
 }  # fmt: skip

@@ -151,6 +151,15 @@ def test_a_header_of_numbers_is_no_value(head, words, tmp_path, capsys):
             "time step [ms]: 5",
             "line 2: expected a step of 0.01 s, as --step gives; the header states 0.005 s",
         ),
+        ("UNITS ARE SECONDS AND G/10", "line 2: expected m/s2, as --unit gives; the header states g/10"),
+        (
+            "#AmplitudeUnit:  gal. DCoffset(corr)",
+            "line 2: expected m/s2, as --unit gives; the header states cm/s2",
+        ),
+        (
+            "NO. OF POINTS =    403      DURATION =   2.015",
+            "line 2: expected a step of 0.01 s, as --step gives; the header states 0.005 s",
+        ),
         ("NPTS=  411, DT=  .0100 SEC", "line 2: expected 411 values, as the header states, found 403"),
         ("Number of points: 404", "line 2: expected 404 values, as the header states, found 403"),
     ],

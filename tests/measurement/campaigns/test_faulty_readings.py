@@ -63,6 +63,18 @@ def test_what_is_no_reading_is_a_gap(change, expected, tmp_path):
     np.testing.assert_array_equal(read[~lost & np.isfinite(sound)], sound[~lost & np.isfinite(sound)])
 
 
+def test_markers_that_one_pose_without_rotation_moved_are_readings():
+    """A table that its drive states by a place alone, or that the optical system holds level."""
+
+    def of_a_pose(values):
+        slab = [index for index, name in enumerate(MARKERS) if name.startswith("slab")]
+        assert len(slab) > 2
+        values[:, slab] = values[:, slab[:1]]
+        values[:, slab[-1]] += 0.5 - 0.5 * (1.0 + 1e-12)  # rounded as a place less its first one
+
+    assert _kinds(_spoilt(of_a_pose)) == []
+
+
 def test_an_optical_system_that_hangs_reads_nothing():
     def hang(values):
         values[800:900] = values[800]

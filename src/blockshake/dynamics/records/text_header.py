@@ -8,7 +8,7 @@ from blockshake.tables.units import UNIT_NAMES, known_unit, unit_of_name
 
 _WORD = re.compile(r"[^\s;|,]+")
 # before a unit of the series, of whatever letters; of one kind or another elsewhere
-_NAMED = re.compile(r"\bunits?\b(?:\s+(?:of|is|are))?\s*[:=]?\s*$", re.IGNORECASE)
+_NAMED = re.compile(r"units?\b(?:\s+(?:of|is|are))?(?:\s+sec(?:ond)?s?\s+and)?\s*[:=]?\s*$", re.IGNORECASE)
 _IN = re.compile(r"\bin\s+$", re.IGNORECASE)
 _VALUE_BEFORE, _VALUE_BEHIND = re.compile(r"\d\s*[\[(]?$"), re.compile(r"^\s*[:=]?\s*[-+.]?\d")
 _PEAK = re.compile(r"\b(?:peak|max\w*|min\w*|pg[avd])\b", re.IGNORECASE)
@@ -27,6 +27,7 @@ _COUNT = re.compile(
     r"\b(?:npts?|(?:number|no\.?)\s+of\s+(?:data\s+)?(?:points|values|samples|data))[\s:=]*(\d+)(?![\d.])",
     re.IGNORECASE,
 )
+_DURATION = re.compile(rf"\bduration[\s:=]*{_NUMBER}", re.IGNORECASE)  # of the series, next to a count
 
 
 def check_text_header(lines, where, unit, step, count):
@@ -88,10 +89,14 @@ def _units(line):
 
 
 def _steps(line):
-    """Every step that a line states [s]; of a rate, its inverse, or itself below 1, where it is a step."""
+    """Every step that a line states [s]; of a rate, its inverse, or itself below 1, where it is a step; of a duration
+    and a count, their ratio."""
     for match in _STEP.finditer(line):
         thousandths = match[3] or (match[1] or "").lower().startswith("m")
         yield (1e-3 if thousandths else 1.0) * float(plain_number(match[2]))
+    counted, lasting = _COUNT.search(line), _DURATION.search(line)
+    if counted and lasting:
+        yield float(plain_number(lasting[1])) / int(counted[1])
     for match in _RATE.finditer(line):
         rate = float(plain_number(match[1]))
         yield 1.0 / rate if rate > 1.0 else rate

@@ -18,6 +18,9 @@ _NOISY = 0.3  # third over first differences: noise has 3, a motion of 10 Hz wit
 _WINDOW = 50  # readings, in which noise changes some
 _RESOLVED = 0.3  # of the readings of the quietest window, that noise changes where its digits are fine enough
 _MANY = 4  # columns that a line spells out
+_ONE_POSE = (
+    3  # columns of a body and axis, from which on those that are all alike are one reading of all the body
+)
 # beyond which a sensor that reads the same throughout reads nothing: no first reading, and twice gravity
 _STUCK = {"m": 0.01, "m/s2": 20.0}
 _INSTRUMENTS = (
@@ -199,7 +202,7 @@ def _faults(values, groups, nothing):
                 faults.append(_Fault("clipped", column, at_end, p))
                 repeats &= ~touched
             original = copies.setdefault(_content(values[:, column]), column)
-            if noisy and original != column:
+            if noisy and original != column and not _of_one_pose(values, groups, group):
                 every = np.isfinite(values[:, column])
                 faults.append(_Fault("doubled", original, every, 0.0))
                 faults.append(_Fault("doubled", column, every, 0.0))
@@ -208,6 +211,13 @@ def _faults(values, groups, nothing):
         if rows.any():
             faults.append(_Fault("frozen" if varying[column] else "constant", column, rows, p))
     return faults
+
+
+def _of_one_pose(values, groups, group):
+    """Whether all columns of a body and axis are one: a pose that does not rotate moved all markers alike."""
+    mine = values[:, [other == group for other in groups]]
+    apart = np.abs(mine - mine[:, :1])
+    return mine.shape[1] >= _ONE_POSE and not (apart > _SAME * np.nanmax(np.abs(mine))).any()
 
 
 def _long_enough(still):
