@@ -1,6 +1,7 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from fake_findings import ECCENTRIC, KINDS, part
 
@@ -72,8 +73,13 @@ def test_until_then_is_the_largest_upper_limit_of_the_drift_of_all_sealed_tests(
     }
     worst = max(factors, key=factors.get)
     said = until_then(one)
-    assert f"by {number(factors[worst], 2)}:" in said
+    upwards = np.ceil(10.0 * factors[worst]) / 10.0
+    assert f"by {number(upwards, 2)}:" in said
     assert f"({worst})" in said
+    changes = one.gain.assign(value_interval=-abs(one.gain["value_interval"]))
+    assert "use displacements of the nominal model as they are: in no sealed test" in until_then(
+        replace(one, gain=changes)
+    )
     assert "no factor is known" in until_then(replace(one, gain=None))
     assert until_then(found["unknown"]).endswith("Look at block-2 or block-1 before the next test.")
     assert "nominal model as it is" in until_then(found["none"])

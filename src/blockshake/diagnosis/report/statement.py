@@ -42,7 +42,7 @@ def until_then(diagnosed):
     """A factor on drifts of the nominal model to use until the cause is known better, or that none is known.
 
     The largest over the sealed tests of the upper limit of the drift with the cause over that without it, from the
-    same samples; never below 1. None of a model that is not proposed.
+    same samples, up to the next tenth; never below 1. None of a model that is not proposed.
     """
     gain, verdict = diagnosed.gain, diagnosed.verdict
     factors = {}
@@ -53,7 +53,7 @@ def until_then(diagnosed):
             without = float(at["value"].sel(side="without"))
             if without > 0.0 and np.isfinite(at["value_interval"]).all():
                 upper = without + at["value_interval"].sel(side="change").to_numpy()[-1]
-                factors[str(test)] = max(1.0, float(upper) / without)
+                factors[str(test)] = np.ceil(round(10.0 * max(1.0, float(upper) / without), 6)) / 10.0
     worst = max(factors, key=factors.get, default=None)
     unknown = [one for one in diagnosed.decision.parts if verdict.word == UNKNOWN and one.causes[0].places]
     return _STATED.until_then(
