@@ -75,8 +75,9 @@ def millimetres(value):
 
 
 def millimetre_range(values):
-    """Smallest and largest of some lengths [m] in mm, such as ``50.0 to 400.0``; NaN is none of them."""
-    return " to ".join(sorted({millimetres(np.nanmin(values)), millimetres(np.nanmax(values))}, key=float))
+    """Smallest and largest of some lengths [m] in mm, such as ``50 to 400``, to 0.1; NaN is none of them."""
+    ends = {round(1000.0 * float(end), 1) for end in (np.nanmin(values), np.nanmax(values))}
+    return " to ".join(f"{end:g}" for end in sorted(ends))
 
 
 def percent(value):

@@ -60,11 +60,11 @@ def test_capacities_between_the_same_levels_are_told_by_these_alone(content):
     [
         (
             ["completed"] * 5,
-            "None fell: every potential collapse is a displacement of more than the limit, 400.0 mm.",
+            "None fell: every potential collapse is a displacement of more than the limit, 400 mm.",
         ),
         (
             ["collapsed", "falling", *["completed"] * 3],
-            "are 2 falls and 2 displacements of more than the limit, 400.0",
+            "are 2 falls and 2 displacements of more than the limit, 400",
         ),
         (["collapsed"] * 5, "The potential collapses are 4 falls."),
     ],
