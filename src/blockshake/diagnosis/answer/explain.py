@@ -90,19 +90,19 @@ def plausible(tried, nuisances):
     """Noise models within 20 nats of the best one for any leading cause of a first look.
 
     Without a cause, a large force that nobody modelled would select the widest errors alone. A tolerance that no
-    structure has beside the best of these causes is left out: a body of less mass needs less of any force.
+    structure has given the best of these causes is left out: a body of less mass needs less of any force.
     """
     among, kept, best, leading = likelihoods(tried.tests, nuisances), set(), {}, []
     for explanation in explain(among[_FIRST_LOOK], tried).by_key.values():
         if explanation.cause not in best or explanation.gain > best[explanation.cause].gain:
             best[explanation.cause] = explanation
     for cause in sorted(best.values(), key=lambda explanation: -explanation.gain)[:_LOOKED_AT]:
-        beside = [given(likelihood, tried.tests, cause) for likelihood in among]
-        logs = np.array([one.log_evidence for one in beside])
+        conditional = [given(likelihood, tried.tests, cause) for likelihood in among]
+        logs = np.array([one.log_evidence for one in conditional])
         kept |= set(np.flatnonzero(logs > logs.max() - _IMPLAUSIBLE))
-        leading.append(beside[int(logs.argmax())])
-    beside = max(leading, key=lambda one: one.log_evidence)
-    left = possible(nuisances, beside.nuisance_amplitudes[: len(nuisances)])
+        leading.append(conditional[int(logs.argmax())])
+    most_probable = max(leading, key=lambda one: one.log_evidence)
+    left = possible(nuisances, most_probable.nuisance_amplitudes[: len(nuisances)])
     return [among[index] for index in sorted(kept)] if len(left) == len(nuisances) else plausible(tried, left)
 
 
