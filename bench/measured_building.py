@@ -48,8 +48,8 @@ def _part(folder, output):
     yield from _missed(folder, decision)
     gain = verdict["row_gain"]["recalibrated"]
     yield (
-        f"Error of the forces of the sealed test that the cause removes, beyond the model recalibrated on the open "
-        f"ones: {gain['estimate']:.0%} ({gain['lower']:.0%} to {gain['upper']:.0%})."
+        f"On the forces of the sealed test the cause removes {gain['estimate']:.0%} ({gain['lower']:.0%} to "
+        f"{gain['upper']:.0%}, an interval of 90 %) of the error of the model recalibrated on the open tests."
     )
     yield "\n".join(["Caveats of the diagnosis:", "", *(f"- {line}" for line in verdict["caveats"])])
 
@@ -87,7 +87,8 @@ def _missed(folder, decision):
     softer = 1.0 - (periods[short] / periods[long]) ** 2
     if not any("damping" in cause.parameters for cause in decision.causes):
         yield (
-            "The damping is missing in the answer: a second size has to add a twentieth to what the first one explains."
+            "The damping is missing in the answer: the guessed friction takes its part, and a second size has to add a "
+            "twentieth to what the first one explains."
         )
     if not any(one.changes for one in decision.histories if one.parameter == "stiffness"):
         yield (

@@ -18,9 +18,7 @@ _BARELY = 1.5  # power of one over the rotation by which a face just opened come
 _ECCENTRIC, _MASS = 0.001, 0.025  # m; of each block's mass
 _PAIR, _JOINT, _RISE, _RISE_AT = 0.12, 0.05, 0.05, 0.03  # of the coefficient; m/s
 _SMALLEST_TURN, _MOST_RISE = 1e-5, 2.0
-_MOST_OF_MASS = (
-    0.5  # of a block's mass: a body of less mass needs less of any force, and no scale asks for this much
-)
+_MOST_OF_MASS = 0.3  # of a block's mass, beyond which a change is no tolerance
 
 
 @dataclass(frozen=True)

@@ -104,7 +104,7 @@ def _of_joints(decision, opened, sealed):
     rows = [sum(of_test) for of_test in zip(*explained, strict=True)]
     times = [test.rows.time for test in after]
     model = _most_probable(models, rows, len(before))
-    # beside the cause and without it, or a recalibrated model would have masses that no block has
+    # given the cause and without it, or a recalibrated model would have masses that no block has
     fits = [_fitted(*_open_rows(model, taken, len(before))) for taken in (rows, [0.0 * one for one in rows])]
     left = possible(nuisances, np.abs(fits).max(axis=0))
     if len(left) < len(nuisances):
