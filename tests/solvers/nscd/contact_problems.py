@@ -9,9 +9,18 @@ from blockshake.solvers.nscd.contact.contacts import delassus_into, detect_conta
 from blockshake.solvers.nscd.contact.law import friction_into, ordered_friction
 from blockshake.solvers.nscd.contact.polyhedra import empty_placed, pack_polyhedra, place_into
 from blockshake.solvers.nscd.progress import no_joints
+from blockshake.solvers.nscd.solve.newton import newton_space
+from blockshake.solvers.nscd.solve.solver import solve_contacts_into
 
 # compiled
 detect_contacts = kernel(detect_contacts)
+
+
+@kernel
+def solve_contacts(bodies, inertia, inverse, contacts, floor, tolerance, most, v):
+    """`solve_contacts_into` with a work space of its own."""
+    newton = newton_space(bodies.driven, contacts.body_a, contacts.body_b)
+    return solve_contacts_into(bodies, inertia, inverse, contacts, floor, tolerance, most, v, newton)
 
 
 def random_problem(rng, n_bodies, n_contacts, mu):

@@ -2,17 +2,19 @@
 
 import numpy as np
 import pytest
-from contact_problems import assert_contact_law, dense, random_problem, slow_reference, step_problem
+from contact_problems import (
+    assert_contact_law,
+    dense,
+    random_problem,
+    slow_reference,
+    solve_contacts,
+    step_problem,
+)
 from scipy.optimize import nnls
 
 from blockshake.geometry.structure import load_structure
-from blockshake.jit import kernel
 from blockshake.solvers.nscd.contact.contacts import contact_velocities_into, delassus_into
 from blockshake.solvers.nscd.solve.gauss_seidel import relative_residual
-from blockshake.solvers.nscd.solve.solver import solve_contacts_into
-
-# compiled
-solve_contacts_into = kernel(solve_contacts_into)
 
 G, DT = 9.81, 1e-3
 TOLERANCE = 1e-10
@@ -65,7 +67,7 @@ def falling(structure, seed, scale):
 def solve(problem, iterations=100_000):
     """Impulses from nothing, which takes far more iterations than a step that starts from the one before."""
     bodies, inertia, inverse, contacts, v = problem
-    return solve_contacts_into(bodies, inertia, inverse, contacts, 1e-12, TOLERANCE, iterations, v)
+    return solve_contacts(bodies, inertia, inverse, contacts, 1e-12, TOLERANCE, iterations, v)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -125,7 +127,7 @@ def test_the_slow_references_answer_is_one_of_the_solvers(seed, scene):
     # it slides
     assert np.abs(expected[18:20]).max() > 1e-3 * G * DT
     contacts.impulse[:] = p.reshape(-1, 3)
-    iterations, residual = solve_contacts_into(bodies, inertia, inverse, contacts, 1e-12, 1e-8, 10, v)
+    iterations, residual = solve_contacts(bodies, inertia, inverse, contacts, 1e-12, 1e-8, 10, v)
     # the reference stops at changes of 1e-13 with thousands of steps still to go
     assert residual < 1e-8
     assert iterations <= 2

@@ -21,6 +21,7 @@ from blockshake.solvers.nscd.contact.polyhedra import empty_placed, place_into
 from blockshake.solvers.nscd.contact.warm_start import warm_start_into
 from blockshake.solvers.nscd.progress import LAST_STEP, press_anew, slip_into, with_pressed
 from blockshake.solvers.nscd.recording import record_driven_into, record_forces_into, record_into
+from blockshake.solvers.nscd.solve.newton import joins, newton_space
 from blockshake.solvers.nscd.solve.solver import solve_contacts_into
 from blockshake.solvers.nscd.step import empty_step, move_into, predict_into
 from blockshake.solvers.record import (
@@ -67,6 +68,7 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
     state, clock, audit, energy = progress.state, progress.clock, progress.audit, progress.energy
     dt, theta = settings.dt, settings.theta
     step, placed, ground = empty_step(state), empty_placed(polyhedra), ground_at_start(scene.table)
+    newton = newton_space(bodies.driven, contacts.body_a, contacts.body_b)
     energy_before = energy.copy()
     gravity = np.sqrt(dot(bodies.gravity, bodies.gravity))
     if clock[STEP] == 0:
@@ -94,9 +96,11 @@ def integrate(scene, times, pause, progress, contacts, joints, record):
             friction_into(friction, joints, step.rotations, renewed)
             law_shift_into(step, h, theta, settings.restitution, renewed)
             warm_start_into(contacts, polyhedra.radius, h / audit[LAST_STEP], renewed)
+            if not joins(newton, renewed.body_a, renewed.body_b):
+                newton = newton_space(bodies.driven, renewed.body_a, renewed.body_b)
             tried, error = solve_contacts_into(
                 bodies, step.inertia, step.inverse_inertia, renewed, least_impulse(bodies, gravity, step.v, h),
-                settings.tolerance, settings.max_iterations, step.v,
+                settings.tolerance, settings.max_iterations, step.v, newton,
             )  # fmt: skip
             iterations += tried
             if parts < settings.impact_parts and bodies_meet(renewed, n_contacts, step.v_start, gravity * dt):

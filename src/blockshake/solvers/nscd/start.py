@@ -12,6 +12,7 @@ from blockshake.solvers.nscd.contact.contacts import delassus_into, detect_conta
 from blockshake.solvers.nscd.contact.law import friction_into, law_shift_into
 from blockshake.solvers.nscd.contact.polyhedra import empty_placed, place_into
 from blockshake.solvers.nscd.progress import no_joints
+from blockshake.solvers.nscd.solve.newton import newton_space
 from blockshake.solvers.nscd.solve.solver import solve_contacts_into
 from blockshake.solvers.nscd.step import empty_step, predict_into
 
@@ -117,7 +118,8 @@ def _static_step(scene, joints, state):
     law_shift_into(step, dt, theta, 0.0, contacts)
     floor = 1e-12 * dt * bodies.mass.max() * np.sqrt((bodies.gravity * bodies.gravity).sum()) + 1e-300
     solve_contacts_into(
-        bodies, step.inertia, step.inverse_inertia, contacts, floor, SETTLING_TOLERANCE, _MOST_ITERATIONS, step.v
+        bodies, step.inertia, step.inverse_inertia, contacts, floor, SETTLING_TOLERANCE, _MOST_ITERATIONS, step.v,
+        newton_space(bodies.driven, contacts.body_a, contacts.body_b),
     )  # fmt: skip
     move_from_rest_into(bodies, step.v, dt, state)
 

@@ -1,15 +1,14 @@
 import numpy as np
 import pytest
-from contact_problems import assert_contact_law, dense, random_problem, slow_reference
+from contact_problems import assert_contact_law, dense, random_problem, slow_reference, solve_contacts
 
 from blockshake.jit import kernel
 from blockshake.solvers.nscd.solve.block_elimination import block_system, find_block, solve_blocks_into
 from blockshake.solvers.nscd.solve.gauss_seidel import sweep_into
-from blockshake.solvers.nscd.solve.solver import solve_contacts_into
+from blockshake.solvers.nscd.solve.newton import joins, newton_space
 
 # compiled
 solve_blocks_into = kernel(solve_blocks_into)
-solve_contacts_into = kernel(solve_contacts_into)
 sweep_into = kernel(sweep_into)
 
 TOLERANCE = 1e-10
@@ -23,7 +22,7 @@ def test_velocities_match_a_slow_reference(seed):
     J, M_inverse = dense(bodies, inverse, contacts)
     p = slow_reference(J @ M_inverse @ J.T, J @ v.ravel(), mu)
     expected = v.ravel() + M_inverse @ J.T @ p
-    _, residual = solve_contacts_into(bodies, inertia, inverse, contacts, 1e-9, TOLERANCE, 5000, v)
+    _, residual = solve_contacts(bodies, inertia, inverse, contacts, 1e-9, TOLERANCE, 5000, v)
     assert residual <= TOLERANCE
     # the reference stops at changes of 1e-13 with steps a hundred times shorter than the answer needs
     np.testing.assert_allclose(v.ravel(), expected, atol=1e-7)
@@ -33,7 +32,7 @@ def test_velocities_match_a_slow_reference(seed):
 def test_contact_law_holds_on_crowded_problems(seed):
     bodies, inertia, inverse, contacts, v = random_problem(np.random.default_rng(100 + seed), 4, 14, 0.6)
     free = v.copy()
-    _, residual = solve_contacts_into(bodies, inertia, inverse, contacts, 1e-9, TOLERANCE, 20000, v)
+    _, residual = solve_contacts(bodies, inertia, inverse, contacts, 1e-9, TOLERANCE, 20000, v)
     assert residual <= TOLERANCE
     assert_contact_law(bodies, inverse, contacts, free, v, 1e3 * TOLERANCE)
 
@@ -42,7 +41,7 @@ def test_sweeps_alone_reach_the_same_velocities():
     rng = np.random.default_rng(7)
     bodies, inertia, inverse, contacts, v = random_problem(rng, 3, 4, 0.3)
     swept = v.copy()
-    solve_contacts_into(bodies, inertia, inverse, contacts, 1e-9, TOLERANCE, 5000, v)
+    solve_contacts(bodies, inertia, inverse, contacts, 1e-9, TOLERANCE, 5000, v)
     contacts.impulse[:] = 0.0
     for sweep in range(4000):
         sweep_into(bodies, inverse, contacts, sweep % 2 == 0, swept)
@@ -92,3 +91,13 @@ def test_elimination_of_a_lattice_fills_in_little():
     b = np.concatenate([place[1:].ravel(), place[:, 1:].ravel()])
     system = block_system(np.zeros(900, bool), a, b)
     assert len(system.column) < 12_000
+
+
+def test_a_work_space_serves_contacts_that_join_the_same_bodies():
+    """Other contacts, fewer, or the same in another order have other entries in the system."""
+    driven, a, b = np.arange(4) == 0, np.array([0, 1, 2]), np.array([1, 2, 3])
+    newton = newton_space(driven, a, b)
+    assert joins(newton, a.copy(), b.copy())
+    assert not joins(newton, a[:2], b[:2])
+    assert not joins(newton, a[[1, 0, 2]], b[[1, 0, 2]])
+    assert not joins(newton, a, np.array([1, 3, 3]))

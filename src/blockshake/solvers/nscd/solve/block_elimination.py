@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.jit import inner_kernel, kernel_without_allocation
+from blockshake.jit import inner_kernel, kernel_without_aliasing, kernel_without_allocation
 
 _FREE = 6  # velocities of a body
 
@@ -134,7 +134,7 @@ def _factor_into(A, exchange):
     return True
 
 
-@kernel_without_allocation
+@kernel_without_aliasing
 def _divide_right_into(A, exchange, B):
     """The rows of ``B``, right of the factored block ``A``, once those of ``A`` are eliminated."""
     for k in range(_FREE):
@@ -149,7 +149,7 @@ def _divide_right_into(A, exchange, B):
                 B[k, j] -= factor * B[i, j]
 
 
-@kernel_without_allocation
+@kernel_without_aliasing
 def _divide_below_into(A, B):
     """Multipliers, transposed, of the rows of ``B^T`` below the factored block ``A``."""
     for k in range(_FREE):
@@ -161,7 +161,7 @@ def _divide_below_into(A, B):
             B[k, j] /= A[k, k]
 
 
-@kernel_without_allocation
+@kernel_without_aliasing
 def _subtract_into(A, B, C):
     """Subtract ``A^T B`` from ``C``."""
     for i in range(_FREE):

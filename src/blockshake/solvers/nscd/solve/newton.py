@@ -18,13 +18,16 @@ from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into
 
 
 class NewtonSpace(NamedTuple):
-    """Work space of the Newton steps of one time step.
+    """Work space of the Newton steps of one time step, and of later ones as long as contacts join the same bodies.
 
-    ``system`` (BlockSystem): in the velocities of the free bodies. ``entry`` int64 (n_contacts,): where the bodies
-    of a contact meet in it, -1 where one is driven. ``slope`` (n_contacts, 3, 3) [kg] and ``offset``
-    (n_contacts, 3) [N s]: of the linear laws. ``columns`` (3, 6): of one contact and one body.
+    ``body_a``, ``body_b`` int64 (n_contacts,): those. ``system`` (BlockSystem): in the velocities of the free bodies.
+    ``entry`` int64 (n_contacts,): where the bodies of a contact meet in it, -1 where one is driven. ``slope``
+    (n_contacts, 3, 3) [kg] and ``offset`` (n_contacts, 3) [N s]: of the linear laws. ``columns`` (3, 6): of one contact
+    and one body.
     """
 
+    body_a: np.ndarray
+    body_b: np.ndarray
     system: BlockSystem
     entry: np.ndarray
     slope: np.ndarray
@@ -43,8 +46,25 @@ def newton_space(driven, body_a, body_b):
         if rank >= 0 and other >= 0:
             entry[contact] = find_block(system, min(rank, other), max(rank, other))
     return NewtonSpace(
-        system, entry, np.empty((n_contacts, 3, 3)), np.empty((n_contacts, 3)), np.empty((3, 6))
+        body_a,
+        body_b,
+        system,
+        entry,
+        np.empty((n_contacts, 3, 3)),
+        np.empty((n_contacts, 3)),
+        np.empty((3, 6)),
     )
+
+
+@kernel_without_allocation
+def joins(newton, body_a, body_b):
+    """Whether a work space is for contacts that join these bodies, one by one."""
+    if newton.body_a.size != body_a.size:
+        return False
+    for contact in range(body_a.size):
+        if newton.body_a[contact] != body_a[contact] or newton.body_b[contact] != body_b[contact]:
+            return False
+    return True
 
 
 @kernel_without_allocation

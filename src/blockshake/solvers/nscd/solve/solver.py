@@ -6,7 +6,7 @@ from blockshake.geometry.vectors import copy_into
 from blockshake.jit import inner_kernel, kernel_without_allocation
 from blockshake.solvers.nscd.contact.contacts import contact_velocities_into
 from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into, relative_residual, sweep_into
-from blockshake.solvers.nscd.solve.newton import newton_space, newton_step_into
+from blockshake.solvers.nscd.solve.newton import newton_step_into
 
 # Newton settles within a few steps, or wanders among states that do not fit together: the stiffer the
 # proximal term the faster, the softer the surer. Tried in turn, each with its limit of steps, which are
@@ -61,7 +61,9 @@ def _restart_into(bodies, inverse_inertia, contacts, floor, residual, v_free, v,
 
 
 @inner_kernel
-def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, tolerance, max_iterations, v):
+def solve_contacts_into(
+    bodies, inertia, inverse_inertia, contacts, floor, tolerance, max_iterations, v, newton
+):
     """Impulses that satisfy the contact law of all contacts at once.
 
     Parameters
@@ -74,6 +76,8 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
         Newton steps and sweeps allowed, together; then an answer that is not trusted is held against sweeps.
     v : float64 array, shape (n_bodies, 6)
         Velocities at the end of the step without contact impulses; with them afterwards.
+    newton : NewtonSpace
+        For these contacts; worked in.
 
     Returns
     -------
@@ -94,7 +98,6 @@ def solve_contacts_into(bodies, inertia, inverse_inertia, contacts, floor, toler
     apply_impulses_into(bodies, inverse_inertia, contacts, v_free, v)
     best, best_impulse, best_v = _residual(contacts, v, floor, u), contacts.impulse.copy(), v.copy()
     iterations, sweeps = 0, FIRST_SWEEPS
-    newton = newton_space(bodies.driven, contacts.body_a, contacts.body_b)
     while True:
         for attempt in range(len(STIFFNESS)):
             for _ in range(NEWTON_STEPS[attempt]):
