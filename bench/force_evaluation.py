@@ -8,7 +8,7 @@ from blockshake.geometry.structure import load_structure
 from blockshake.jit import loop_kernel
 from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_candidates
 from blockshake.solvers.ls_dem.contact.contact_forces import contact_forces_into, no_loads
-from blockshake.solvers.ls_dem.contact.relative_pose import Poses
+from blockshake.solvers.ls_dem.contact.relative_pose import poses_at_rest
 from blockshake.solvers.ls_dem.driver import simulate_ls_dem
 from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
@@ -39,7 +39,7 @@ def assembled_stack(parameters):
     surfaces = assemble_surfaces(structure, parameters)
     n_bodies = len(structure.mass)
     rotation = np.ascontiguousarray(rotation_matrices(orientation))
-    poses = Poses(position, rotation, position.copy(), rotation.copy())
+    poses = poses_at_rest(position, rotation)
     candidates, joints = find_candidates(
         surfaces, structure.driven, poses, orientation, parameters.skin, empty_candidates(n_bodies),
         no_joints(),

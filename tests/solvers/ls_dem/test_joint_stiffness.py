@@ -7,7 +7,7 @@ from blockshake.dynamics.system import assemble_bodies
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_candidates
 from blockshake.solvers.ls_dem.contact.contact_forces import forces_into, no_loads
-from blockshake.solvers.ls_dem.contact.relative_pose import Poses
+from blockshake.solvers.ls_dem.contact.relative_pose import poses_at_rest
 from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.ls_dem.progress import no_joints
@@ -38,7 +38,7 @@ def wrench(structure, position, orientation, **parameters):
         (state.position, position), (state.orientation, orientation),
     ))  # fmt: skip
     rotation = np.ascontiguousarray(rotation_matrices(orientation))
-    poses = Poses(position, rotation, position.copy(), rotation.copy())
+    poses = poses_at_rest(position, rotation)
     candidates, joints = find_candidates(
         surfaces, bodies.driven, poses, orientation, 0.01, empty_candidates(2), no_joints()
     )

@@ -10,7 +10,7 @@ from blockshake.geometry.polyhedron import box_vertices, convex_polyhedron, tria
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_candidates
 from blockshake.solvers.ls_dem.contact.contact_forces import forces_into, no_loads
-from blockshake.solvers.ls_dem.contact.relative_pose import Poses
+from blockshake.solvers.ls_dem.contact.relative_pose import poses_at_rest
 from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
 from blockshake.solvers.ls_dem.parameters import LsDemParameters, own_stiffness
 from blockshake.solvers.ls_dem.progress import no_joints
@@ -58,7 +58,7 @@ def _threshold(structure, width):
         position[1] = [width * np.sin(lean), 0.0, height]
         orientation[1] = [np.cos(0.5 * lean), 0.0, np.sin(0.5 * lean), 0.0]
         rotation = np.ascontiguousarray(rotation_matrices(orientation))
-        poses = Poses(position, rotation, position.copy(), rotation.copy())
+        poses = poses_at_rest(position, rotation)
         candidates, joints = find_candidates(
             surfaces, bodies.driven, poses, orientation, 0.01, empty_candidates(2), no_joints()
         )

@@ -8,7 +8,7 @@ from blockshake.dynamics.system import State
 from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.vectors import copy_into
 from blockshake.jit import inner_kernel
-from blockshake.solvers.ls_dem.contact.relative_pose import Poses
+from blockshake.solvers.ls_dem.contact.relative_pose import Poses, poses_at_rest
 
 # Entry of ``clock`` after `STEP` and `NEXT_RECORD` of `blockshake.solvers.record`
 SEARCHES = 2
@@ -100,7 +100,7 @@ def start_progress(bodies, state, started):
     momentum[bodies.driven] = 0.0
     return LeapfrogProgress(
         state=state,
-        poses=Poses(state.position, rotation, state.position.copy(), rotation.copy()),
+        poses=poses_at_rest(state.position, rotation),
         half_velocity=state.velocity.copy(),
         half_momentum=momentum,
         driven_force=np.zeros((n_bodies, 3)),

@@ -12,13 +12,14 @@ from blockshake.solvers.ls_dem.contact import located_nodes
 from blockshake.solvers.ls_dem.contact.located_nodes import locate_nodes_into
 from blockshake.solvers.ls_dem.contact.packets import (
     AREA,
+    FACTOR,
     LANES,
-    LOCATED,
     NORMAL,
-    PACKET,
     PHI,
     PLACE,
     POINT,
+    Span,
+    no_packets,
 )
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.ls_dem.surfaces import assemble_surfaces, level_set
@@ -28,6 +29,7 @@ level_set = kernel(level_set)
 locate_nodes_into = kernel(locate_nodes_into)
 
 N_PACKETS = 50
+UNTURNED = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
 
 @pytest.fixture(scope="module", params=["exact", "grid", "planes"])
@@ -51,20 +53,20 @@ def test_packets_give_the_bits_of_single_places(surfaces):
     rng = np.random.default_rng(10)
     points = (rng.random((N_PACKETS * LANES, 3)) - 0.5) * np.array([1.1, 2.7, 1.9])
     points[::7] = 1e6  # filling of a packet
-    packets, located = np.zeros((N_PACKETS, PACKET)), np.zeros((N_PACKETS, LOCATED))
-    rows, found = packets.reshape(N_PACKETS, -1, LANES), located.reshape(N_PACKETS, -1, LANES)
+    packets = no_packets(N_PACKETS, N_PACKETS, N_PACKETS)
+    rows, found = (table.reshape(N_PACKETS, -1, LANES) for table in (packets.alike, packets.located))
     first = POINT // LANES
     rows[:, first : first + 3] = points.reshape(N_PACKETS, LANES, 3).transpose(0, 2, 1)
-    rows[:, AREA // LANES] = 0.5
+    rows[:, AREA // LANES] = 2.0
+    packets.kept[:, FACTOR : FACTOR + LANES] = 0.25
     shape = int(surfaces.shape[1])
-    R, d = np.zeros((2, 3, 3)), np.zeros((2, 3))
-    R[1] = np.eye(3)
-    area = locate_nodes_into(packets, located, 0, N_PACKETS, 0, surfaces, shape, R, d, 1)
+    area, woke = locate_nodes_into(packets, Span(0, N_PACKETS, 0, 0), surfaces, shape, UNTURNED)
     expected = _level_sets(surfaces, shape, points)
     np.testing.assert_array_equal(found[:, PHI // LANES].ravel(), expected)
     assert area == 0.5 * (expected < 0.0).sum()
+    assert woke
     first = PLACE // LANES
-    np.testing.assert_array_equal(rows[:, first : first + 3].transpose(0, 2, 1).reshape(-1, 3), points)
+    np.testing.assert_array_equal(found[:, first : first + 3].transpose(0, 2, 1).reshape(-1, 3), points)
     # the gradient of the distance is a unit vector, and central differences of it
     first = NORMAL // LANES
     normal = found[:, first : first + 3].transpose(0, 2, 1).reshape(-1, 3)
@@ -92,17 +94,6 @@ def test_packets_become_vector_instructions(surfaces, name):
     table = (surfaces.half, surfaces.chamfer)
     if name == "_locate_in_lattice_into":
         table = (surfaces.lattice, surfaces.values)
-    fresh(
-        np.zeros((1, PACKET)),
-        np.zeros((1, LOCATED)),
-        0,
-        0,
-        0,
-        *table,
-        0,
-        np.zeros((2, 3, 3)),
-        np.zeros((2, 3)),
-        0,
-    )
+    fresh(no_packets(1, 1, 1), Span(0, 0, 0, 0), *table, 0, UNTURNED)
     products = re.findall(r"fmul .*<(\d+) x double>", next(iter(fresh.inspect_llvm().values())))
     assert len(products) >= 9  # those of the turn into the other frame at least

@@ -10,7 +10,7 @@ from blockshake.geometry.rotations import rotation_matrices
 from blockshake.geometry.structure import START_TOLERANCE, build_structure
 from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_candidates
 from blockshake.solvers.ls_dem.contact.contact_forces import forces_into, no_loads
-from blockshake.solvers.ls_dem.contact.relative_pose import Poses
+from blockshake.solvers.ls_dem.contact.relative_pose import poses_at_rest
 from blockshake.solvers.ls_dem.interfaces import assemble_interfaces
 from blockshake.solvers.ls_dem.parameters import LsDemParameters
 from blockshake.solvers.ls_dem.progress import NearPairs
@@ -255,7 +255,7 @@ def test_the_force_of_a_shifted_joint_has_no_moment_of_its_own(make_structure):
     orientation = np.array([state.orientation[0], lean / np.linalg.norm(lean)])
     position = np.array([[0.0, 0.0, 0.8], [0.1, 0.2, 2.08]])
     rotation = np.ascontiguousarray(rotation_matrices(orientation))
-    poses = Poses(position, rotation, position.copy(), rotation.copy())
+    poses = poses_at_rest(position, rotation)
     surfaces = assemble_surfaces(structure, LsDemParameters())
     interfaces = assemble_interfaces(structure, LsDemParameters())
     joints = NearPairs(

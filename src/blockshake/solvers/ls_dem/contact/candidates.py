@@ -6,18 +6,25 @@ import numpy as np
 
 from blockshake.geometry.overlap import find_pairs
 from blockshake.geometry.rotations import rotation_matrix_into
-from blockshake.jit import inner_kernel, kernel, kernel_without_aliasing, kernel_without_allocation
+from blockshake.jit import inner_kernel, kernel, kernel_without_allocation
 from blockshake.solvers.ls_dem.contact.joint_areas import joint_areas_into
-from blockshake.solvers.ls_dem.contact.located_nodes import locate_nodes_into
+from blockshake.solvers.ls_dem.contact.located_nodes import locate_nodes_into, placed, recall_into, side_pose
 from blockshake.solvers.ls_dem.contact.packets import (
+    AREA,
+    BUSY_BEFORE,
     CLOSED,
+    DAMPING_WEIGHT,
     FAR_AWAY,
-    HELD,
+    IDLE,
+    KEPT,
     LANES,
-    LOCATED,
-    PACKET,
     PHI,
     POINT,
+    STRAINED,
+    STRETCH,
+    Packets,
+    Span,
+    no_packets,
     put_triple,
 )
 from blockshake.solvers.ls_dem.contact.relative_pose import N_KEY, facing_key, relative_pose_into
@@ -28,6 +35,8 @@ _FRESH = -2  # no key begins so
 # A pair sleeps until it has come nearer by this share of its gap, and never with a gap below a share of the skin: it
 # then wakes before the step in which it touches, also at a metre a second
 _SLEEPS_FOR, _LEAST_GAP = 0.5, 0.05
+# A side looks among so many before it for one whose nodes lie alike: a course of a wall repeats itself after fewer
+_NEIGHBOURS = 16
 
 
 class Candidates(NamedTuple):
@@ -36,9 +45,9 @@ class Candidates(NamedTuple):
     ``pairs`` int64 (n_pairs, 2), lower index first; ``joint`` int64 (n_pairs,): their rows in `NearPairs`, whose
     ``shift`` (n_pairs, 3) is repeated here. Side ``2 p`` of pair ``p`` holds nodes of its first body against the level
     set of its second, side ``2 p + 1`` the reverse. ``first`` int64 (2 n_pairs + 1,): first packet of each side.
-    ``node`` int64 (n_packets * LANES,): index in `Surfaces`, -1 for filling. ``packets`` float64 (n_packets, PACKET):
-    see `packets`. ``located`` float64 (packets of the pair with most, LOCATED): workspace of the pair at hand.
-    ``position`` and ``orientation``: poses for which the list was made.
+    ``alike`` int64 (2 n_pairs,): its first packet among those of sides alike. ``node`` int64 (n_packets * LANES,):
+    index in `Surfaces`, -1 for filling. ``packets``: see `Packets`. ``position`` and ``orientation``: poses for which
+    the list was made.
 
     A pair of which no node can touch yet sleeps: its nodes are not followed, and in a wall with open joints not even
     read. ``reach`` (n_pairs,): way of its two bodies towards each other below which it does [m]; ``asleep`` bool
@@ -50,11 +59,11 @@ class Candidates(NamedTuple):
     joint: np.ndarray
     shift: np.ndarray
     first: np.ndarray
+    alike: np.ndarray
     node: np.ndarray
-    packets: np.ndarray
+    packets: Packets
     share: np.ndarray
     key: np.ndarray
-    located: np.ndarray
     position: np.ndarray
     orientation: np.ndarray
     reach: np.ndarray
@@ -67,10 +76,19 @@ def empty_candidates(n_bodies):
     """Lists before the first search."""
     return Candidates(
         np.empty((0, 2), np.int64), np.empty(0, np.int64), np.empty((0, 3)), np.zeros(1, np.int64),
-        np.empty(0, np.int64), np.empty((0, PACKET)), np.empty(0), np.empty((0, N_KEY), np.int64),
-        np.empty((0, LOCATED)), np.full((n_bodies, 3), np.inf), np.zeros((n_bodies, 4)), np.empty(0),
-        np.empty(0, np.bool_), np.zeros(n_bodies),
+        np.empty(0, np.int64), np.empty(0, np.int64), no_packets(0, 0, 0), np.empty(0), np.empty((0, N_KEY), np.int64),
+        np.full((n_bodies, 3), np.inf), np.zeros((n_bodies, 4)), np.empty(0), np.empty(0, np.bool_),
+        np.zeros(n_bodies),
     )  # fmt: skip
+
+
+@kernel_without_allocation
+def span_of(candidates, pair, side):
+    """`Span` of a side."""
+    at = 2 * pair + side
+    return Span(
+        candidates.first[at], candidates.first[at + 1], candidates.first[2 * pair], candidates.alike[at]
+    )
 
 
 @kernel_without_allocation
@@ -125,7 +143,7 @@ def _boxes(surfaces, position, orientation):
 
 
 @inner_kernel
-def _near_nodes(surfaces, pair, R, d, side, skin, nodes, count):
+def _near_nodes(surfaces, pair, pose, side, skin, nodes, count):
     """Append the nodes of one side of a pair within ``skin`` of the other body; list, count and gap [m]."""
     owner, other = pair[side], pair[1 - side]
     shape, other_shape = surfaces.shape[owner], surfaces.shape[other]
@@ -137,10 +155,7 @@ def _near_nodes(surfaces, pair, R, d, side, skin, nodes, count):
     gap = skin
     for node in range(surfaces.first_node[shape], surfaces.first_node[shape + 1]):
         p, e = surfaces.points[node], surfaces.offset[owner]
-        px, py, pz = p[0] - e[0], p[1] - e[1], p[2] - e[2]
-        x = R[side, 0, 0] * px + R[side, 0, 1] * py + R[side, 0, 2] * pz + d[side, 0]
-        y = R[side, 1, 0] * px + R[side, 1, 1] * py + R[side, 1, 2] * pz + d[side, 1]
-        z = R[side, 2, 0] * px + R[side, 2, 1] * py + R[side, 2, 2] * pz + d[side, 2]
+        x, y, z = placed(pose, p[0] - e[0], p[1] - e[1], p[2] - e[2])
         distance = level_set(surfaces, other_shape, x, y, z) / surfaces.steepest[other_shape]
         if distance < skin:
             nodes[count] = node
@@ -189,7 +204,7 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
     joint, joints = _joints_of(pairs, earlier, old.joint, joints)
     shift = joints.shift[joint]
     n_sides = 2 * pairs.shape[0]
-    R, d = np.empty((2, 3, 3)), np.empty((2, 3))
+    R, d = np.empty((3, 3)), np.empty((2, 3))
     nodes, count = np.empty(1024, np.int64), np.zeros(n_sides + 1, np.int64)
     share, reach = np.empty(n_sides), np.full(pairs.shape[0], np.inf)
     for side in range(n_sides):
@@ -197,34 +212,41 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
         count[side + 1] = count[side]
         share[side] = _share(surfaces, driven, pair[of], pair[1 - of])
         if share[side] > 0.0:
-            relative_pose_into(position, rotation, surfaces.offset, pair, shift[side // 2], of, R, d)
-            nodes, count[side + 1], gap = _near_nodes(surfaces, pair, R, d, of, skin, nodes, count[side])
+            relative_pose_into(position, rotation, surfaces.offset, pair, shift[side // 2], R, d)
+            pose = side_pose(R, d, of)
+            nodes, count[side + 1], gap = _near_nodes(surfaces, pair, pose, of, skin, nodes, count[side])
             reach[side // 2] = min(reach[side // 2], _SLEEPS_FOR * gap if gap > _LEAST_GAP * skin else 0.0)
     first = np.zeros(n_sides + 1, np.int64)
     for side in range(n_sides):
         first[side + 1] = first[side] + (count[side + 1] - count[side] + LANES - 1) // LANES
+    alike, n_alike = np.zeros(n_sides, np.int64), 0
+    for side in range(n_sides):
+        like = _side_alike(surfaces, pairs, nodes, count, side)
+        alike[side] = n_alike if like == side else alike[like]
+        n_alike += first[side + 1] - first[side] if like == side else 0
     node = np.full(first[n_sides] * LANES, -1, np.int64)
-    packets = np.zeros((first[n_sides], PACKET))
-    located = np.zeros((_most_packets(first), LOCATED))
+    packets = no_packets(n_alike, first[n_sides], _most_packets(first))
     for side in range(n_sides):
         pair, of = pairs[side // 2], side % 2
         e, n_nodes = surfaces.offset[pair[of]], count[side + 1] - count[side]
         for rank in range((first[side + 1] - first[side]) * LANES):
-            slot = first[side] * LANES + rank
-            packet, lane = slot // LANES, slot % LANES
+            packet, lane = alike[side] + rank // LANES, rank % LANES
             if rank < n_nodes:
-                node[slot] = nodes[count[side] + rank]
-                p = surfaces.points[node[slot]]
-                put_triple(packets, packet, POINT, lane, p[0] - e[0], p[1] - e[1], p[2] - e[2])
+                near = nodes[count[side] + rank]
+                node[first[side] * LANES + rank] = near
+                p = surfaces.points[near]
+                put_triple(packets.alike, packet, POINT, lane, p[0] - e[0], p[1] - e[1], p[2] - e[2])
+                packets.alike[packet, AREA + lane] = surfaces.areas[near]
+                packets.alike[packet, DAMPING_WEIGHT + lane] = surfaces.damping_weight[near]
             else:
-                packets[packet, POINT + lane] = FAR_AWAY
-    key = np.full((pairs.shape[0], N_KEY), _FRESH, np.int64)
+                packets.alike[packet, POINT + lane] = FAR_AWAY
+    n_pairs = pairs.shape[0]
     new = Candidates(
-        pairs, joint, shift, first, node, packets, share, key, located, position.copy(), orientation.copy(), reach,
-        np.zeros(pairs.shape[0], np.bool_), np.zeros(position.shape[0]),
+        pairs, joint, shift, first, alike, node, packets, share, np.full((n_pairs, N_KEY), _FRESH, np.int64),
+        position.copy(), orientation.copy(), reach, np.zeros(n_pairs, np.bool_), np.zeros(position.shape[0]),
     )  # fmt: skip
-    for pair in range(pairs.shape[0]):
-        _locate_before_into(new, surfaces, poses, pair, R, d)
+    for pair in range(n_pairs):
+        _recall_into(new, surfaces, poses, pair, R, d)
     _carry_over_into(old, earlier, new)
     return new, joints
 
@@ -238,20 +260,43 @@ def _most_packets(first):
     return most
 
 
-@kernel_without_aliasing
-def _locate_before_into(candidates, surfaces, poses, pair, R, d):
-    """Place the nodes of a pair where they were a step before, from where their next motion counts."""
-    pairs, first = candidates.pairs, candidates.first
-    for side in range(2):
-        relative_pose_into(
-            poses.position_before, poses.rotation_before, surfaces.offset, pairs[pair], candidates.shift[pair], side,
-            R, d,
-        )  # fmt: skip
-    for side in range(2):
-        locate_nodes_into(
-            candidates.packets, candidates.located, first[2 * pair + side], first[2 * pair + side + 1],
-            first[2 * pair], surfaces, surfaces.shape[pairs[pair, 1 - side]], R, d, side,
-        )  # fmt: skip
+@inner_kernel
+def _side_alike(surfaces, pairs, nodes, count, side):
+    """First of the sides before this one, not far before it, whose nodes lie alike; else the side itself."""
+    e, n_nodes = surfaces.offset[pairs[side // 2, side % 2]], count[side + 1] - count[side]
+    for other in range(max(side - _NEIGHBOURS, 0), side):
+        of_other = surfaces.offset[pairs[other // 2, other % 2]]
+        same = count[other + 1] - count[other] == n_nodes
+        same &= e[0] == of_other[0] and e[1] == of_other[1] and e[2] == of_other[2]
+        rank = 0
+        while same and rank < n_nodes:
+            same = nodes[count[side] + rank] == nodes[count[other] + rank]
+            rank += 1
+        if same:
+            return other
+    return side
+
+
+@inner_kernel
+def _recall_into(candidates, surfaces, poses, pair, R, d):
+    """Find out what idle packets of a pair did not keep of the step before, and locate the nodes where they are now."""
+    for now in range(2):
+        position = poses.position if now else poses.position_before
+        rotation = poses.rotation if now else poses.rotation_before
+        _relate_into(candidates, surfaces, position, rotation, pair, R, d)
+        _locate_into(candidates, surfaces, pair, R, d)
+        if not now:
+            _relate_into(candidates, surfaces, poses.position_earlier, poses.rotation_earlier, pair, R, d)
+            for side in range(2):
+                recall_into(candidates.packets, span_of(candidates, pair, side), side_pose(R, d, side))
+
+
+@kernel_without_allocation
+def _relate_into(candidates, surfaces, position, rotation, pair, R, d):
+    """Pose of a pair's bodies to each other, as `relative_pose_into`."""
+    relative_pose_into(
+        position, rotation, surfaces.offset, candidates.pairs[pair], candidates.shift[pair], R, d
+    )
 
 
 @kernel_without_allocation
@@ -276,24 +321,31 @@ def sleeps(candidates, position, pair):
 def locate_pair_into(candidates, surfaces, poses, pair, R, d):
     """Locate the nodes of both sides of a pair, awake now; the area in touch, mean of what both sides find [m2].
 
-    The places and ``located`` of the candidates, ``R`` (2, 3, 3) and ``d`` (2, 3) are overwritten.
+    The ``located`` packets, ``R`` (3, 3) and ``d`` (2, 3) are overwritten.
     """
-    pairs, first = candidates.pairs, candidates.first
     if candidates.asleep[pair]:
         candidates.asleep[pair] = False
-        _locate_before_into(candidates, surfaces, poses, pair, R, d)
-    for side in range(2):
-        relative_pose_into(
-            poses.position, poses.rotation, surfaces.offset, pairs[pair], candidates.shift[pair], side, R, d
-        )
+        candidates.packets.state[candidates.first[2 * pair] : candidates.first[2 * pair + 2]] = IDLE
+    _relate_into(candidates, surfaces, poses.position, poses.rotation, pair, R, d)
     _renew_areas_into(candidates, surfaces, pair, R, d)
-    area = 0.0
-    for side in range(2):
-        area += 0.5 * locate_nodes_into(
-            candidates.packets, candidates.located, first[2 * pair + side], first[2 * pair + side + 1],
-            first[2 * pair], surfaces, surfaces.shape[pairs[pair, 1 - side]], R, d, side,
-        )  # fmt: skip
+    area, woke = _locate_into(candidates, surfaces, pair, R, d)
+    if woke:
+        _recall_into(candidates, surfaces, poses, pair, R, d)
     return area
+
+
+@inner_kernel
+def _locate_into(candidates, surfaces, pair, R, d):
+    """Locate the nodes of both sides of a pair; mean area in touch [m2], and whether a packet is busy that was idle."""
+    area, woke = 0.0, False
+    for side in range(2):
+        of_side, woke_there = locate_nodes_into(
+            candidates.packets, span_of(candidates, pair, side), surfaces,
+            surfaces.shape[candidates.pairs[pair, 1 - side]], side_pose(R, d, side),
+        )  # fmt: skip
+        area += 0.5 * of_side
+        woke |= woke_there
+    return area, woke
 
 
 @kernel_without_allocation
@@ -313,8 +365,8 @@ def nearest_node(candidates, pair):
     least, at, lane_at = np.inf, 0, 0
     for row in range(candidates.first[2 * pair + 2] - candidates.first[2 * pair]):
         for lane in range(LANES):
-            if candidates.located[row, PHI + lane] < least:
-                least, at, lane_at = candidates.located[row, PHI + lane], row, lane
+            if candidates.packets.located[row, PHI + lane] < least:
+                least, at, lane_at = candidates.packets.located[row, PHI + lane], row, lane
     return least, at, lane_at
 
 
@@ -360,8 +412,13 @@ def _carry_over_into(old, earlier, new):
                 while slot < end and old.node[slot] != -1 and old.node[slot] < new.node[here]:
                     slot += 1
                 if slot < end and new.node[here] != -1 and old.node[slot] == new.node[here]:
-                    source, target = old.packets[slot // LANES], new.packets[here // LANES]
-                    for row in range(CLOSED, PACKET, LANES):
+                    source, target = old.packets.kept[slot // LANES], new.packets.kept[here // LANES]
+                    state = old.packets.state[slot // LANES]
+                    for row in range(CLOSED, KEPT if state != IDLE else CLOSED, LANES):
                         target[row + here % LANES] = source[row + slot % LANES]
-                    if target[HELD + here % LANES] != 0.0:
-                        new.reach[pair] = 0.0
+                        if row >= STRETCH and target[row + here % LANES] != 0.0:
+                            new.packets.state[here // LANES] = STRAINED
+                            new.reach[pair] = 0.0
+                    new.packets.state[here // LANES] = max(
+                        new.packets.state[here // LANES], min(state, BUSY_BEFORE)
+                    )

@@ -7,9 +7,16 @@ import numpy as np
 from blockshake.dynamics.friction import friction_asymmetry, friction_coefficient
 from blockshake.geometry.vectors import cross, difference, matrix_product
 from blockshake.jit import inner_kernel, kernel_without_allocation, loop_kernel
-from blockshake.solvers.ls_dem.contact.candidates import locate_pair_into, sleeps
+from blockshake.solvers.ls_dem.contact.candidates import locate_pair_into, sleeps, span_of
 from blockshake.solvers.ls_dem.contact.contact_law import Law, side_forces_into
-from blockshake.solvers.ls_dem.contact.packets import LANES, N_SUMS, SUM_DAMPED, SUM_HELD, SUM_SLID
+from blockshake.solvers.ls_dem.contact.packets import (
+    LANES,
+    N_SUMS,
+    SUM_DAMPED,
+    SUM_HELD,
+    SUM_SLID,
+    cache_lines,
+)
 from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series, normal_stiffness
 from blockshake.solvers.ls_dem.progress import NearPairs
 
@@ -24,7 +31,7 @@ class Loads(NamedTuple):
     """Result of a force evaluation, overwritten by it.
 
     ``force``, ``moment`` (n_bodies, 3) on each body [N, N m], world frame, about its mass centre;
-    ``energy`` (N_ENERGIES,) [J]; ``joints``: forces and slips of the pairs. Workspace of one pair: ``R`` (2, 3, 3) and
+    ``energy`` (N_ENERGIES,) [J]; ``joints``: forces and slips of the pairs. Workspace of one pair: ``R`` (3, 3) and
     ``d`` (2, 3), see `relative_pose_into`; ``lanes`` (N_SUMS * LANES,) and ``sums`` (N_SUMS,), see `side_forces_into`.
     """
 
@@ -42,8 +49,8 @@ class Loads(NamedTuple):
 def no_loads(n_bodies, joints):
     """Loads before the first evaluation."""
     return Loads(
-        np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3)), np.zeros(N_ENERGIES), joints, np.empty((2, 3, 3)),
-        np.empty((2, 3)), np.empty(N_SUMS * LANES), np.empty(N_SUMS),
+        np.zeros((n_bodies, 3)), np.zeros((n_bodies, 3)), np.zeros(N_ENERGIES), joints, np.empty((3, 3)),
+        np.empty((2, 3)), cache_lines(1, N_SUMS * LANES)[0], np.empty(N_SUMS),
     )  # fmt: skip
 
 
@@ -79,7 +86,6 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
     """
     R, d, lanes, sums = loads.R, loads.d, loads.lanes, loads.sums
     pairs, bounds = candidates.pairs, candidates.first
-    packets, located = candidates.packets, candidates.located
     offset, rotation = surfaces.offset, poses.rotation
     force, moment, joint_force = loads.force, loads.moment, loads.joints.force
     energy = loads.energy
@@ -104,16 +110,11 @@ def contact_forces_into(candidates, surfaces, interfaces, poses, dt, loads):
         for side in range(2):
             # along the first body's x in the other's frame; its own slip is the reverse of the second's
             bx, by, bz = (
-                (bias, 0.0, 0.0)
-                if side == 1
-                else (-bias * R[0, 0, 0], -bias * R[0, 1, 0], -bias * R[0, 2, 0])
+                (bias, 0.0, 0.0) if side == 1 else (-bias * R[0, 0], -bias * R[0, 1], -bias * R[0, 2])
             )
             # each side carries half of the stiffness: a face on a face has the whole
             law = Law(0.5 * k_n, 0.5 * k_s, gamma_n, mu, bx, by, bz, interfaces.least_force, rate)
-            side_forces_into(
-                packets, located, bounds[2 * pair + side], bounds[2 * pair + side + 1], bounds[2 * pair], law,
-                gamma_s, lanes, sums,
-            )  # fmt: skip
+            side_forces_into(candidates.packets, span_of(candidates, pair, side), law, gamma_s, lanes, sums)
             _share_into(
                 pairs[pair, side], pairs[pair, 1 - side], side, rotation, offset, d, sums, force, moment, joint,
                 joint_force,

@@ -5,14 +5,18 @@ from typing import NamedTuple
 import numpy as np
 
 from blockshake.jit import kernel_without_aliasing, kernel_without_allocation
+from blockshake.solvers.ls_dem.contact.located_nodes import moved
 from blockshake.solvers.ls_dem.contact.packets import (
     AREA,
+    BEFORE,
     BUSY,
+    BUSY_BEFORE,
     CLOSED,
     DAMPED,
     DAMPING_WEIGHT,
+    FACTOR,
     FORCE,
-    HELD,
+    IDLE,
     LANES,
     MOMENT,
     MOVED,
@@ -23,6 +27,7 @@ from blockshake.solvers.ls_dem.contact.packets import (
     SLID,
     SLOPE,
     SPRUNG,
+    STRAINED,
     STRETCH,
     add_triple,
     put_triple,
@@ -143,12 +148,12 @@ def node_force(phi, slope, nx, ny, nz, ux, uy, uz, ox, oy, oz, closed, area, wei
 
 
 @kernel_without_aliasing
-def side_forces_into(packets, located, first, last, start, law, gamma_s, lanes, sums):
+def side_forces_into(packets, span, law, gamma_s, lanes, sums):
     """Forces of the nodes of one side, summed.
 
     Parameters
     ----------
-    packets, located, first, last, start
+    packets, span
         As in `locate_nodes_into`: the nodes' springs are updated, their forces overwritten.
     law, gamma_s : Law, float
         Dashpot next to the shear springs, per unit of a node's damping weight.
@@ -158,37 +163,40 @@ def side_forces_into(packets, located, first, last, start, law, gamma_s, lanes, 
 
     Notes
     -----
-    A packet in which no node touches and no spring is stretched has no force.
+    A packet that is idle has no force.
     """
     lanes[:] = 0.0
-    for packet in range(first, last):
-        row = packet - start
+    located, kept = packets.located, packets.kept
+    for packet in range(span.first, span.last):
+        row, alike = packet - span.start, packet - span.first + span.alike
         if located[row, BUSY] == 0.0:
-            for lane in range(LANES):
-                ux, uy, uz = triple(located, row, MOVED, lane)
-                nx, ny, nz = triple(located, row, NORMAL, lane)
-                packets[packet, CLOSED + lane] = ux * nx + uy * ny + uz * nz
+            packets.state[packet] = IDLE
             continue
+        strained = False
         for lane in range(LANES):
             nx, ny, nz = triple(located, row, NORMAL, lane)
-            ux, uy, uz = triple(located, row, MOVED, lane)
-            ox, oy, oz = triple(packets, packet, STRETCH, lane)
+            ux, uy, uz = moved(packets, packet, row, lane)
+            ox, oy, oz = triple(kept, packet, STRETCH, lane)
+            factor = kept[packet, FACTOR + lane]
             fx, fy, fz, sx, sy, sz, closed, held, slid, damped = node_force(
                 located[row, PHI + lane], located[row, SLOPE + lane], nx, ny, nz, ux, uy, uz, ox, oy, oz,
-                packets[packet, CLOSED + lane], packets[packet, AREA + lane], packets[packet, DAMPING_WEIGHT + lane],
-                law,
+                kept[packet, CLOSED + lane], factor * packets.alike[alike, AREA + lane],
+                factor * packets.alike[alike, DAMPING_WEIGHT + lane], law,
             )  # fmt: skip
-            x, y, z = triple(packets, packet, PLACE, lane)
-            put_triple(packets, packet, STRETCH, lane, sx, sy, sz)
-            packets[packet, CLOSED + lane] = closed
+            x, y, z = triple(located, row, PLACE, lane)
+            put_triple(located, row, MOVED, lane, ux, uy, uz)
+            put_triple(kept, packet, BEFORE, lane, x, y, z)
+            put_triple(kept, packet, STRETCH, lane, sx, sy, sz)
+            kept[packet, CLOSED + lane] = closed
             put_triple(located, row, FORCE, lane, fx, fy, fz)
             put_triple(located, row, MOMENT, lane, y * fz - z * fy, z * fx - x * fz, x * fy - y * fx)
-            packets[packet, HELD + lane] = held
+            strained |= held != 0.0
             located[row, SPRUNG + lane] = held
             located[row, SLID + lane] = slid
             located[row, DAMPED + lane] = damped
+        packets.state[packet] = STRAINED if strained else BUSY_BEFORE
         if gamma_s > 0.0:
-            _add_shear_dashpots_into(packets, packet, located, row, gamma_s * law.rate, law)
+            _add_shear_dashpots_into(packets, packet, alike, row, gamma_s * law.rate, law)
         for entry in range(N_SUMS * LANES):
             lanes[entry] += located[row, FORCE + entry]
     for quantity in range(N_SUMS):
@@ -196,21 +204,23 @@ def side_forces_into(packets, located, first, last, start, law, gamma_s, lanes, 
 
 
 @kernel_without_aliasing
-def _add_shear_dashpots_into(packets, packet, located, row, gamma_rate, law):
+def _add_shear_dashpots_into(packets, packet, alike, row, gamma_rate, law):
     """Dashpots next to the shear springs of one packet's nodes, as long as these do not slide.
 
     The velocity is the mean of the step, the tangential change of place over the step, whose inverse is in
     ``gamma_rate``: of first order in the step. Spring and dashpot together stay below Coulomb's limit.
     """
+    located, kept = packets.located, packets.kept
     for lane in range(LANES):
-        x, y, z = triple(packets, packet, PLACE, lane)
+        x, y, z = triple(located, row, PLACE, lane)
         nx, ny, nz = triple(located, row, NORMAL, lane)
         mx, my, mz = triple(located, row, MOVED, lane)
-        phi, along = located[row, PHI + lane], packets[packet, CLOSED + lane]
+        phi, along = located[row, PHI + lane], kept[packet, CLOSED + lane]
         ux, uy, uz = mx - along * nx, my - along * ny, mz - along * nz
         # a node sticks where this step made no friction heat
         sticks = phi < 0.0 and located[row, SLID + lane] == 0.0
-        c = gamma_rate * packets[packet, DAMPING_WEIGHT + lane] if sticks else 0.0
+        weight = kept[packet, FACTOR + lane] * packets.alike[alike, DAMPING_WEIGHT + lane]
+        c = gamma_rate * weight if sticks else 0.0
         gx, gy, gz = triple(located, row, FORCE, lane)
         f_n = gx * nx + gy * ny + gz * nz
         gx, gy, gz = gx - f_n * nx, gy - f_n * ny, gz - f_n * nz

@@ -5,7 +5,7 @@ import numpy as np
 from blockshake.geometry.level_set import hollow_depth
 from blockshake.geometry.vectors import copy_into
 from blockshake.jit import inner_kernel, kernel_without_allocation
-from blockshake.solvers.ls_dem.contact.packets import AREA, DAMPING_WEIGHT, LANES
+from blockshake.solvers.ls_dem.contact.packets import FACTOR, LANES
 from blockshake.solvers.ls_dem.contact.relative_pose import facing_of
 
 _ON_FACE = 1e-9  # m
@@ -20,7 +20,7 @@ _ORDERS = (6, 3, 1)  # terms of a polynomial of degree two, one and none
 
 @inner_kernel
 def joint_areas_into(candidates, surfaces, pair, key):
-    """Areas and damping weights of the listed nodes of a pair, whose key (4,) is that of `facing_key`; overwritten.
+    """Factors of the areas of the listed nodes of a pair, whose key (4,) is that of `facing_key`; overwritten.
 
     Notes
     -----
@@ -40,8 +40,7 @@ def joint_areas_into(candidates, surfaces, pair, key):
                     factor = candidates.share[2 * pair + side]
                     if fitted:
                         factor *= _factor(candidates, surfaces, pair, key, side == 1, node, factors, centre)
-                    candidates.packets[packet, AREA + lane] = factor * surfaces.areas[node]
-                    candidates.packets[packet, DAMPING_WEIGHT + lane] = factor * surfaces.damping_weight[node]
+                    candidates.packets.kept[packet, FACTOR + lane] = factor
 
 
 @inner_kernel

@@ -17,16 +17,23 @@ N_KEY = 4
 
 
 class Poses(NamedTuple):
-    """Poses now and a step earlier, world frame.
+    """Poses now, a step before, and another step earlier, world frame.
 
-    ``position``, ``position_before`` (n_bodies, 3) [m]; ``rotation``, ``rotation_before`` (n_bodies, 3, 3),
-    body to world.
+    ``position``, ``position_before``, ``position_earlier`` (n_bodies, 3) [m]; ``rotation``, ``rotation_before``,
+    ``rotation_earlier`` (n_bodies, 3, 3), body to world.
     """
 
     position: np.ndarray
     rotation: np.ndarray
     position_before: np.ndarray
     rotation_before: np.ndarray
+    position_earlier: np.ndarray
+    rotation_earlier: np.ndarray
+
+
+def poses_at_rest(position, rotation):
+    """`Poses` of bodies that were where they are."""
+    return Poses(position, rotation, position.copy(), rotation.copy(), position.copy(), rotation.copy())
 
 
 @kernel_without_allocation
@@ -34,29 +41,33 @@ def keep_poses(poses):
     """Make the poses now those of the step before."""
     for body in range(poses.position.shape[0]):
         for i in range(3):
+            poses.position_earlier[body, i] = poses.position_before[body, i]
             poses.position_before[body, i] = poses.position[body, i]
             for j in range(3):
+                poses.rotation_earlier[body, i, j] = poses.rotation_before[body, i, j]
                 poses.rotation_before[body, i, j] = poses.rotation[body, i, j]
 
 
 @kernel_without_allocation
-def relative_pose_into(position, rotation, offset, pair, shift, side, R, d):
-    """Pose of one body of a pair in the frame of the other's shape, whose origin is the shape's centroid.
+def relative_pose_into(position, rotation, offset, pair, shift, R, d):
+    """Pose of each body of a pair in the frame of the other's shape, whose origin is the shape's centroid.
 
-    The owner of ``side`` 0 is the pair's first body. Its axes are ``R[side]`` (3, 3), its mass centre is ``d[side]``
-    (3,); ``offset`` as in `Surfaces`, ``shift`` (3,) as in `NearPairs`.
+    The owner of side 0 is the pair's first body, that of side 1 the second, whose axes in the first's frame are the
+    columns of ``R`` (3, 3). The owner's mass centre is ``d[side]`` (3,); ``offset`` as in `Surfaces`, ``shift`` (3,) as
+    in `NearPairs`.
     """
-    owner, other = pair[side], pair[1 - side]
-    away = transposed_product(rotation[other], difference(position[owner], position[other]))
+    a, b = pair[0], pair[1]
+    of_first = transposed_product(rotation[b], difference(position[a], position[b]))
+    of_second = transposed_product(rotation[a], difference(position[b], position[a]))
     for i in range(3):
         for j in range(3):
-            R[side, i, j] = (
-                rotation[other, 0, i] * rotation[owner, 0, j]
-                + rotation[other, 1, i] * rotation[owner, 1, j]
-                + rotation[other, 2, i] * rotation[owner, 2, j]
+            R[i, j] = (
+                rotation[a, 0, i] * rotation[b, 0, j]
+                + rotation[a, 1, i] * rotation[b, 1, j]
+                + rotation[a, 2, i] * rotation[b, 2, j]
             )
-        d[side, i] = away[i] + offset[other, i]
-        d[side, i] += shift[i] if side == 0 else -dot(R[1, i], shift)
+        d[0, i] = of_first[i] + offset[b, i] + shift[i]
+        d[1, i] = of_second[i] + offset[a, i] - dot(R[i], shift)
 
 
 class Facing(NamedTuple):
@@ -82,8 +93,8 @@ class Facing(NamedTuple):
 def facing_key(surfaces, a, b, R, d):
     """Position on the raster of body ``b`` as ``a`` sees it: four whole numbers, the first -1 where no flats meet.
 
-    ``R`` (2, 3, 3) and ``d`` (2, 3) are those of `relative_pose_into`, of which side 1 is read. The numbers are the
-    code of axes, ends and quarter turn; the middle along both axes of the plane, and the turn, in steps.
+    ``R`` (3, 3) and ``d`` (2, 3) are those of `relative_pose_into`. The numbers are the code of axes, ends and quarter
+    turn; the middle along both axes of the plane, and the turn, in steps.
 
     Notes
     -----
@@ -97,25 +108,25 @@ def facing_key(surfaces, a, b, R, d):
     gap, axis_a, axis_b = -np.inf, -1, -1
     for i in range(3):
         for j in range(3):
-            if abs(R[1, j, i]) > _PARALLEL:
-                centre = d[1, j] - R[1, j, 0] * offset[0] - R[1, j, 1] * offset[1] - R[1, j, 2] * offset[2]
+            if abs(R[j, i]) > _PARALLEL:
+                centre = d[1, j] - R[j, 0] * offset[0] - R[j, 1] * offset[1] - R[j, 2] * offset[2]
                 apart = abs(centre) - half_a[j] - half_b[i]
                 if apart > gap:
                     gap, axis_a, axis_b = apart, j, i
     if axis_a < 0:
         return -1, 0, 0, 0
     p, q, r = (axis_a + 1) % 3, (axis_a + 2) % 3, (axis_b + 1) % 3
-    height = R[1, axis_a, 0] * offset[0] + R[1, axis_a, 1] * offset[1] + R[1, axis_a, 2] * offset[2]
+    height = R[axis_a, 0] * offset[0] + R[axis_a, 1] * offset[1] + R[axis_a, 2] * offset[2]
     above = d[1, axis_a] - height > 0.0
     # the end of b whose normal points at a
-    upper = (R[1, axis_a, axis_b] > 0.0) != above
+    upper = (R[axis_a, axis_b] > 0.0) != above
     reach = half_b[axis_b] if upper else -half_b[axis_b]
-    u, v = d[1, p] + R[1, p, axis_b] * reach, d[1, q] + R[1, q, axis_b] * reach
+    u, v = d[1, p] + R[p, axis_b] * reach, d[1, q] + R[q, axis_b] * reach
     for k in range(3):
-        u -= R[1, p, k] * offset[k]
-        v -= R[1, q, k] * offset[k]
+        u -= R[p, k] * offset[k]
+        v -= R[q, k] * offset[k]
     step, turn_step = _raster(surfaces, shape_a, shape_b, axis_a, axis_b)
-    cosine, sine = R[1, p, r], R[1, q, r]
+    cosine, sine = R[p, r], R[q, r]
     along = abs(cosine) >= abs(sine)
     quarter = (0 if cosine > 0.0 else 1) if along else (2 if sine > 0.0 else 3)
     small = sine if along else cosine

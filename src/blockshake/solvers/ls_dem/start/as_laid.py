@@ -13,7 +13,7 @@ from blockshake.solvers.ls_dem.contact.candidates import (
     nearest_node,
 )
 from blockshake.solvers.ls_dem.contact.packets import LANES, NORMAL
-from blockshake.solvers.ls_dem.contact.relative_pose import Poses
+from blockshake.solvers.ls_dem.contact.relative_pose import poses_at_rest
 from blockshake.solvers.ls_dem.progress import no_joints
 from blockshake.solvers.ls_dem.start.equilibrium import (
     displacements,
@@ -57,7 +57,7 @@ def joints_as_laid(structure, assembly, state, settled):
     """
     bodies, surfaces = assembly.bodies, assembly.surfaces
     rotation = np.ascontiguousarray(rotation_matrices(state.orientation))
-    poses = Poses(state.position, rotation, state.position, rotation)
+    poses = poses_at_rest(state.position, rotation)
     none = empty_candidates(len(bodies.mass))
     candidates, joints = find_candidates(
         surfaces, bodies.driven, poses, state.orientation, assembly.skin, none, no_joints()
@@ -107,7 +107,7 @@ def _part_into(candidates, surfaces, poses):
     """
     n_pairs = candidates.pairs.shape[0]
     depth, rest = np.zeros(n_pairs), np.zeros(n_pairs)
-    R, d = np.empty((2, 3, 3)), np.empty((2, 3))
+    R, d = np.empty((3, 3)), np.empty((2, 3))
     for pair in range(n_pairs):
         for parting in range(_MOST_PARTINGS):
             locate_pair_into(candidates, surfaces, poses, pair, R, d)
@@ -119,10 +119,10 @@ def _part_into(candidates, surfaces, poses):
                 break
             of_first = candidates.first[2 * pair] + row < candidates.first[2 * pair + 1]
             for i in range(3):
-                n = candidates.located[row, NORMAL + i * LANES + lane]
+                n = candidates.packets.located[row, NORMAL + i * LANES + lane]
                 if of_first:
                     candidates.shift[pair, i] += rest[pair] * n
                 else:
                     for j in range(3):
-                        candidates.shift[pair, j] -= rest[pair] * n * R[1, i, j]
+                        candidates.shift[pair, j] -= rest[pair] * n * R[i, j]
     return depth, rest

@@ -13,10 +13,20 @@ from blockshake.solvers.ls_dem.contact.candidates import (
     find_candidates,
     locate_pair_into,
     nearest_node,
+    span_of,
 )
 from blockshake.solvers.ls_dem.contact.contact_forces import forces_into, no_loads
-from blockshake.solvers.ls_dem.contact.packets import AREA, DAMPING_WEIGHT, LANES, NORMAL, PHI, PLACE, triple
-from blockshake.solvers.ls_dem.contact.relative_pose import Poses
+from blockshake.solvers.ls_dem.contact.packets import (
+    AREA,
+    DAMPING_WEIGHT,
+    FACTOR,
+    LANES,
+    NORMAL,
+    PHI,
+    PLACE,
+    triple,
+)
+from blockshake.solvers.ls_dem.contact.relative_pose import poses_at_rest
 from blockshake.solvers.ls_dem.interfaces import dashpot_coefficient, in_series, normal_stiffness
 
 _MOST_ITERATIONS = 20
@@ -64,7 +74,7 @@ def approach_equilibrium(assembly, state, near, joints):
     n_bodies = len(bodies.mass)
     position, orientation = state.position.copy(), state.orientation.copy()
     rotation = np.ascontiguousarray(rotation_matrices(orientation))
-    poses = Poses(position, rotation, position.copy(), rotation.copy())
+    poses = poses_at_rest(position, rotation)
     candidates, joints = find_candidates(
         surfaces, bodies.driven, poses, orientation, assembly.skin, empty_candidates(n_bodies), joints
     )
@@ -168,7 +178,7 @@ def joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
     stiffness, pull = np.zeros((n_pairs, 12, 12)), np.zeros((poses.position.shape[0], 6))
     touching, relaxation = np.zeros(n_pairs, np.bool_), np.zeros(n_pairs)
     B, DB = np.zeros((3, 12)), np.empty((3, 12))
-    turn, shift = np.empty((2, 3, 3)), np.empty((2, 3))
+    turn, shift = np.empty((3, 3)), np.empty((2, 3))
     for pair in range(n_pairs):
         locate_pair_into(candidates, surfaces, poses, pair, turn, shift)
         a, b = candidates.pairs[pair, 0], candidates.pairs[pair, 1]
@@ -179,29 +189,24 @@ def joint_stiffness(candidates, interfaces, surfaces, poses, reach, down):
         for side in range(2):
             owner, other = candidates.pairs[pair, side], candidates.pairs[pair, 1 - side]
             R = poses.rotation[other]
-            for packet in range(candidates.first[2 * pair + side], candidates.first[2 * pair + side + 1]):
-                node = candidates.packets[packet]
-                located = candidates.located[packet - candidates.first[2 * pair]]
+            span = span_of(candidates, pair, side)
+            for packet in range(span.first, span.last):
+                node = candidates.packets.alike[packet - span.first + span.alike]
+                located, at_row = candidates.packets.located, packet - span.start
                 for lane in range(LANES):
-                    phi = located[PHI + lane]
+                    phi = located[at_row, PHI + lane]
                     if not phi < closed:
                         continue
-                    n = matrix_product(
-                        R,
-                        (
-                            located[NORMAL + lane],
-                            located[NORMAL + LANES + lane],
-                            located[NORMAL + 2 * LANES + lane],
-                        ),
-                    )
-                    place = triple(candidates.packets, packet, PLACE, lane)
+                    n = matrix_product(R, triple(located, at_row, NORMAL, lane))
+                    place = triple(located, at_row, PLACE, lane)
                     arm = matrix_product(R, difference(place, surfaces.offset[other]))
                     if phi >= 0.0 and abs(dot(n, down)) < 0.5:
                         continue
                     touching[pair] = True
-                    half_area = 0.5 * node[AREA + lane]
+                    factor = candidates.packets.kept[packet, FACTOR + lane]
+                    half_area = 0.5 * (factor * node[AREA + lane])
                     area += half_area
-                    weight += node[DAMPING_WEIGHT + lane]
+                    weight += factor * node[DAMPING_WEIGHT + lane]
                     at = poses.position[other]
                     point = at[0] + arm[0], at[1] + arm[1], at[2] + arm[2]
                     _relative_motion_into(

@@ -12,8 +12,8 @@ from blockshake.geometry.vectors import difference, dot
 from blockshake.jit import loop_kernel
 from blockshake.solvers.ls_dem.contact.candidates import empty_candidates, find_candidates, lists_expired
 from blockshake.solvers.ls_dem.contact.contact_forces import forces_into, no_loads
-from blockshake.solvers.ls_dem.contact.packets import HELD, STRETCH
-from blockshake.solvers.ls_dem.contact.relative_pose import Poses, keep_poses
+from blockshake.solvers.ls_dem.contact.packets import STRETCH
+from blockshake.solvers.ls_dem.contact.relative_pose import keep_poses, poses_at_rest
 from blockshake.solvers.ls_dem.progress import no_joints
 from blockshake.solvers.ls_dem.start.as_laid import joints_as_laid
 from blockshake.solvers.ls_dem.start.equilibrium import approach_equilibrium
@@ -56,7 +56,7 @@ def settled_start(structure, assembly, state):
     for pair, (a, b) in enumerate(candidates.pairs):
         if not (settled[a] or settled[b]):
             first, last = candidates.first[2 * pair], candidates.first[2 * pair + 2]
-            candidates.packets[first:last, STRETCH:HELD] = 0.0
+            candidates.packets.kept[first:last, STRETCH:] = 0.0
     return candidates, joints, np.array([steps, stable_step, overlap])
 
 
@@ -110,7 +110,9 @@ def settle(assembly, given, state, near, at_rest, leaving, candidates, joints):
     for body in range(n_bodies):
         rotation_matrix_into(given.orientation[body], rotation_before[body])
         rotation_matrix_into(state.orientation[body], rotation[body])
-    poses = Poses(state.position, rotation, given.position.copy(), rotation_before)
+    poses = poses_at_rest(given.position, rotation_before)._replace(
+        position=state.position, rotation=rotation
+    )
     motion, expired = np.zeros((3, n_bodies, 3)), True
     for step in range(_MOST_STEPS):
         if expired:
