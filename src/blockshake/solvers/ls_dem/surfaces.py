@@ -9,7 +9,7 @@ from blockshake.geometry.level_set import box_distance, hollow_box_distance
 from blockshake.geometry.level_set_grid import box_grid, grid_distance, grid_table, mesh_grid
 from blockshake.geometry.meshes.mesh_nodes import mesh_nodes
 from blockshake.geometry.surface_nodes import box_nodes
-from blockshake.jit import inner_kernel, kernel_without_allocation
+from blockshake.jit import kernel_without_allocation
 
 INVERSE_SPACING = 7  # column of ``Surfaces.lattice``
 _COARSEST = 4.0 / 3.0  # cell of a lattice over volume per surface: two thirds of a plate's thickness
@@ -183,7 +183,7 @@ def _check_grid(structure, name, parameters):
         raise _refusal(structure, name, f"expected fewer lattice points: ls_dem.grid_spacing is {spacing} m")
 
 
-@inner_kernel
+@kernel_without_allocation
 def level_set(surfaces, shape, x, y, z):
     """Level-set value of a shape at one place in its frame [m]."""
     if surfaces.first_plane[shape] < surfaces.first_plane[shape + 1]:

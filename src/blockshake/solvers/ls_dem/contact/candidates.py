@@ -142,16 +142,11 @@ def _boxes(surfaces, position, orientation):
     return low, high
 
 
-@inner_kernel
-def _near_nodes(surfaces, pair, pose, side, skin, nodes, count):
-    """Append the nodes of one side of a pair within ``skin`` of the other body; list, count and gap [m]."""
+@kernel_without_allocation
+def _near_nodes_into(surfaces, pair, pose, side, skin, nodes, count):
+    """Write the nodes of one side of a pair within ``skin`` of the other body after ``count`` others; count, gap."""
     owner, other = pair[side], pair[1 - side]
     shape, other_shape = surfaces.shape[owner], surfaces.shape[other]
-    most = surfaces.first_node[shape + 1] - surfaces.first_node[shape]
-    if count + most > nodes.size:
-        longer = np.empty(2 * (count + most), np.int64)
-        longer[:count] = nodes[:count]
-        nodes = longer
     gap = skin
     for node in range(surfaces.first_node[shape], surfaces.first_node[shape + 1]):
         p, e = surfaces.points[node], surfaces.offset[owner]
@@ -161,7 +156,7 @@ def _near_nodes(surfaces, pair, pose, side, skin, nodes, count):
             nodes[count] = node
             count += 1
             gap = min(gap, distance)
-    return nodes, count, gap
+    return count, gap
 
 
 @inner_kernel
@@ -213,8 +208,14 @@ def find_candidates(surfaces, driven, poses, orientation, skin, old, joints):
         share[side] = _share(surfaces, driven, pair[of], pair[1 - of])
         if share[side] > 0.0:
             relative_pose_into(position, rotation, surfaces.offset, pair, shift[side // 2], R, d)
+            shape = surfaces.shape[pair[of]]
+            most = count[side] + surfaces.first_node[shape + 1] - surfaces.first_node[shape]
+            if most > nodes.size:
+                longer = np.empty(2 * most, np.int64)
+                longer[: count[side]] = nodes[: count[side]]
+                nodes = longer
             pose = side_pose(R, d, of)
-            nodes, count[side + 1], gap = _near_nodes(surfaces, pair, pose, of, skin, nodes, count[side])
+            count[side + 1], gap = _near_nodes_into(surfaces, pair, pose, of, skin, nodes, count[side])
             reach[side // 2] = min(reach[side // 2], _SLEEPS_FOR * gap if gap > _LEAST_GAP * skin else 0.0)
     first = np.zeros(n_sides + 1, np.int64)
     for side in range(n_sides):
