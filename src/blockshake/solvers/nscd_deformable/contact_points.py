@@ -19,9 +19,9 @@ _SAME_POINT = 1e-6  # m
 class Anchors(NamedTuple):
     """Where the contacts of a step hold on to the deformable bodies.
 
-    ``points`` int64 (n_contacts, 2, 4), ``weights`` (n_contacts, 2, 4): lattice points of bodies a and b around each
-    contact, as in `anchor_into`. ``first`` int64 (n_bodies + 1,) and ``active`` int64 (n_active,): those of any
-    contact, body by body, increasing.
+    ``active`` int64 (n_active,) and ``first`` int64 (n_bodies + 1,): lattice points of any contact, body by body,
+    increasing, and where those of each begin. ``points`` int64 (n_contacts, 2, 4), ``weights`` (n_contacts, 2, 4): of
+    these the ones of bodies a and b around each contact, as in `anchor_into`.
     """
 
     points: np.ndarray
@@ -187,28 +187,33 @@ def find_contacts(
     points[count : count + n_stoppers] = 0
     weights[count : count + n_stoppers] = 0.0
     total = count + n_stoppers
-    first, active = _active_points(elastic, points[:count], weights[:count])
+    first, active = _active_points_into(elastic, points[:count], weights[:count])
     return first_rows(contacts, total), Anchors(points[:total].copy(), weights[:total].copy(), first, active)
 
 
 @inner_kernel
-def _active_points(elastic, points, weights):
-    """Points that any contact holds on to, and where those of each body begin."""
+def _active_points_into(elastic, points, weights):
+    """Points that any contact holds on to, and where those of each body begin; ``points`` become places among them."""
     n_bodies = elastic.first_point.size - 1
-    touched = np.zeros(elastic.first_point[n_bodies], np.bool_)
+    place = np.full(elastic.first_point[n_bodies], -1, np.int64)
     for contact in range(points.shape[0]):
         for side in range(2):
             for corner in range(4):
                 if weights[contact, side, corner] != 0.0:
-                    touched[points[contact, side, corner]] = True
-    first, active = np.zeros(n_bodies + 1, np.int64), np.empty(touched.size, np.int64)
+                    place[points[contact, side, corner]] = 0
+    first, active = np.zeros(n_bodies + 1, np.int64), np.empty(place.size, np.int64)
     count = 0
     for body in range(n_bodies):
         for point in range(elastic.first_point[body], elastic.first_point[body + 1]):
-            if touched[point]:
-                active[count] = point
+            if place[point] == 0:
+                active[count], place[point] = point, count
                 count += 1
         first[body + 1] = count
+    for contact in range(points.shape[0]):
+        for side in range(2):
+            for corner in range(4):
+                if weights[contact, side, corner] != 0.0:
+                    points[contact, side, corner] = place[points[contact, side, corner]]
     return first, active[:count].copy()
 
 
@@ -235,7 +240,7 @@ def tangents_into(rotations, contacts):
 def deform_gaps_into(anchors, rotations, displacements, contacts):
     """Add to each gap what the deformation opens it by.
 
-    ``displacements`` (n_points, 3): of the lattice's points, body frames [m].
+    ``displacements`` (n_active, 3): of the lattice's points that carry contact, body frames [m].
     """
     for contact in range(contacts.gap.size):
         n = contacts.basis[contact, 0]

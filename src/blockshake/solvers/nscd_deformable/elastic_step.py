@@ -12,8 +12,8 @@ class ElasticResponse(NamedTuple):
     """How the elastic coordinates answer impulses over a step of one length.
 
     ``dt`` [s]; ``theta`` [1]; ``admittance`` (n_shapes,): rate per modal impulse [1]. ``first_entry`` int64
-    (n_bodies + 1,), ``compliance`` (n_entries,): velocity of each body's points per impulse at them [1/kg], rows and
-    columns ``3 point + axis``, body frame.
+    (n_bodies + 1,), ``compliance`` (n_entries,): velocity of each body's points, all of them or those of `at_anchors`,
+    per impulse at them [1/kg], rows and columns ``3 point + axis``, body frame.
     """
 
     dt: float
@@ -49,10 +49,45 @@ def step_response(elastic, dt, theta):
     return ElasticResponse(dt, theta, admittance, first_entry, compliance)
 
 
+@inner_kernel
+def at_anchors(elastic, response, anchors):
+    """The response with the compliance of the points alone that carry contact."""
+    n_bodies = anchors.first.size - 1
+    first_entry = np.zeros(n_bodies + 1, np.int64)
+    for body in range(n_bodies):
+        rows = 3 * (anchors.first[body + 1] - anchors.first[body])
+        first_entry[body + 1] = first_entry[body] + rows * rows
+    compliance = np.empty(first_entry[n_bodies])
+    _compliance_into(elastic, response, anchors, compliance)
+    return ElasticResponse(response.dt, response.theta, response.admittance, first_entry, compliance)
+
+
+@kernel_without_allocation
+def _compliance_into(elastic, response, anchors, compliance):
+    count = 0
+    for body in range(anchors.first.size - 1):
+        active = anchors.active[anchors.first[body] : anchors.first[body + 1]]
+        C, first = compliance_of(elastic.first_point, response, body), elastic.first_point[body]
+        for source in active:
+            for axis in range(3):
+                row = C[3 * (source - first) + axis]
+                for point in active:
+                    at = 3 * (point - first)
+                    compliance[count], compliance[count + 1], compliance[count + 2] = (
+                        row[at],
+                        row[at + 1],
+                        row[at + 2],
+                    )
+                    count += 3
+
+
 @inline_kernel
-def compliance_of(elastic, response, body):
-    """Velocity per impulse of one body's points: float64 array, shape (3 n_points, 3 n_points), a view."""
-    rows = 3 * (elastic.first_point[body + 1] - elastic.first_point[body])
+def compliance_of(first_point, response, body):
+    """Velocity per impulse of one body's points: float64 array, shape (3 n_points, 3 n_points), a view.
+
+    ``first_point`` int64 (n_bodies + 1,): where the points of each body begin.
+    """
+    rows = 3 * (first_point[body + 1] - first_point[body])
     first, last = response.first_entry[body], response.first_entry[body + 1]
     return response.compliance[first:last].reshape(rows, rows)
 
@@ -76,8 +111,8 @@ def predict_elastic_into(elastic, response, deformation, amplitude, rate):
 def points_into(elastic, coordinates, anchors, points):
     """Displacements, or velocities, of the lattice's points that carry contact, body frames.
 
-    ``coordinates`` (n_shapes,): amplitudes or rates. Of ``points`` (n_points, 3) the rows that ``anchors`` (Anchors)
-    names are overwritten.
+    ``coordinates`` (n_shapes,): amplitudes or rates. ``points`` (n_active, 3), those of ``anchors`` (Anchors), are
+    overwritten.
     """
     for body in range(elastic.first_shape.size - 1):
         shapes, first = shapes_of(elastic, body), elastic.first_point[body]
@@ -85,7 +120,7 @@ def points_into(elastic, coordinates, anchors, points):
         for entry in range(anchors.first[body], anchors.first[body + 1]):
             point = anchors.active[entry]
             for axis in range(3):
-                points[point, axis] = _dot(shapes[3 * (point - first) + axis], values)
+                points[entry, axis] = _dot(shapes[3 * (point - first) + axis], values)
 
 
 @kernel_without_allocation
@@ -115,7 +150,7 @@ def _move_elastic_into(elastic, response, anchors, forces, rate, deformation, pu
         for entry in range(anchors.first[body], anchors.first[body + 1]):
             point = anchors.active[entry]
             for axis in range(3):
-                force, row = forces[point, axis], shapes[3 * (point - first) + axis]
+                force, row = forces[entry, axis], shapes[3 * (point - first) + axis]
                 if force != 0.0:
                     for shape in range(push.size):
                         push[shape] += force * row[shape]
@@ -142,8 +177,8 @@ def move_elastic_into(elastic, response, anchors, forces, rate, deformation):
     Parameters
     ----------
     elastic, response, anchors : Elastic, ElasticResponse, Anchors
-    forces : float64 array, shape (n_points, 3)
-        Impulses on the points, body frames [N s]; rows of those that carry contact count.
+    forces : float64 array, shape (n_active, 3)
+        Impulses on the points that carry contact, body frames [N s].
     rate : float64 array, shape (n_shapes,)
         At the end of the step without contact; overwritten with those with it.
     deformation : Deformation

@@ -19,6 +19,7 @@ from blockshake.solvers.nscd.recording import record_into
 from blockshake.solvers.nscd.step import empty_step, move_into, predict_into
 from blockshake.solvers.nscd_deformable.contact_points import deform_gaps_into, find_contacts, tangents_into
 from blockshake.solvers.nscd_deformable.elastic_step import (
+    at_anchors,
     elastic_energy,
     move_elastic_into,
     points_into,
@@ -177,19 +178,20 @@ def solve_step(
     )  # fmt: skip
     place_stoppers_into(bodies, scene.stoppers, scene.watch.base, step, dt, theta, contacts)
     tangents_into(step.rotations, contacts)
-    motion = empty_motion(bodies.mass.size, elastic.first_point[bodies.mass.size], contacts.gap.size)
+    motion = empty_motion(bodies.mass.size, anchors.active.size, contacts.gap.size)
     amplitude = np.empty(rate.size)
     predict_elastic_into(elastic, response, deformation, amplitude, rate)
     points_into(elastic, amplitude, anchors, motion.points)
     deform_gaps_into(anchors, step.rotations, motion.points, contacts)
-    point_free = np.zeros(motion.points.shape)
+    point_free = np.empty(motion.points.shape)
     points_into(elastic, rate, anchors, point_free)
     friction_into(scene.friction, joints, step.rotations, contacts)
     law_shift_into(step, dt, theta, restitution, contacts)
     warm_start_into(contacts_before, scene.polyhedra.radius, share, contacts)
     problem = Problem(
-        bodies, elastic, response, anchors, step.inverse_inertia, step.rotations, step.v.copy(), point_free
-    )
+        bodies, at_anchors(elastic, response, anchors), anchors, step.inverse_inertia, step.rotations, step.v.copy(),
+        point_free,
+    )  # fmt: skip
     iterations, residual, factor = solve_contacts_into(
         problem, contacts, floor, tolerance, scene.settings.max_iterations, motion, factor
     )

@@ -84,47 +84,33 @@ def _serves(factor, contacts, laws, setting):
 
 
 @kernel_without_allocation
-def _system_into(laws, operator, row, A, last):
-    """The system of the closed contacts, whose places in it are ``row``, into the zeros of ``A``."""
-    n = row.size
-    for contact in range(n):
-        if row[contact] < 0:
-            continue
-        end = row[contact]
-        D = laws.slope[contact]
-        for other in range(n):
-            if row[other] < 0:
-                continue
-            if other > operator.last[contact]:
-                break
-            end = max(end, row[other])
-            if operator.last[other] < contact:
-                continue
-            for i in range(3):
-                below = A[3 * row[contact] + i, 3 * row[other] : 3 * row[other] + 3]
-                if contact == other:
-                    below[i] = 1.0
-                for k in range(3):
-                    slope = D[i, k]
-                    if slope != 0.0:
-                        given = operator.matrix[3 * contact + k, 3 * other : 3 * other + 3]
-                        for j in range(3):
-                            below[j] += slope * given[j]
-        last[3 * row[contact] : 3 * row[contact] + 3] = 3 * end + 2
+def _system_into(laws, operator, closed, A, last):
+    """The system of the contacts ``closed``, increasing, into the zeros of ``A``."""
+    first, end, matrix = 0, 0, operator.matrix
+    for place in range(closed.size):
+        contact = closed[place]
+        while operator.last[closed[first]] < contact:
+            first += 1
+        while end < closed.size and closed[end] <= operator.last[contact]:
+            end += 1
+        w0, w1, w2 = matrix[3 * contact], matrix[3 * contact + 1], matrix[3 * contact + 2]
+        for i in range(3):
+            row = A[3 * place + i]
+            row[3 * place + i] = 1.0
+            d0, d1, d2 = laws.slope[contact, i, 0], laws.slope[contact, i, 1], laws.slope[contact, i, 2]
+            for other in range(first, end):
+                for j in range(3):
+                    at, given = 3 * other + j, 3 * closed[other] + j
+                    row[at] = row[at] + d0 * w0[given] + d1 * w1[given] + d2 * w2[given]
+            last[3 * place + i] = 3 * end - 1
 
 
 @inner_kernel
 def _factored(contacts, laws, setting, operator):
     """The system ``I + D W`` of the closed contacts, factored; its ``matrix`` is empty where it is singular."""
-    n = contacts.gap.size
-    row = np.full(n, -1, np.int64)
-    closed = 0
-    for contact in range(n):
-        if laws.state[contact] != OPEN:
-            row[contact] = closed
-            closed += 1
-    A, last = np.zeros((3 * closed, 3 * closed)), np.empty(3 * closed, np.int64)
-    _system_into(laws, operator, row, A, last)
+    closed = np.flatnonzero(laws.state != OPEN)
+    A, last = np.zeros((3 * closed.size, 3 * closed.size)), np.empty(3 * closed.size, np.int64)
+    _system_into(laws, operator, closed, A, last)
     if not factor_into(A, last):
         A = np.empty((0, 0))
     return Factor(

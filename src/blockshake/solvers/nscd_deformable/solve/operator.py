@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from blockshake.geometry.vectors import cross, dot, matrix_product, put_into, transposed_product
-from blockshake.jit import inner_kernel, kernel_without_allocation
+from blockshake.geometry.vectors import copy_into, cross, dot, matrix_product, put_into, transposed_product
+from blockshake.jit import inner_kernel, kernel_without_aliasing, kernel_without_allocation
 from blockshake.solvers.nscd.contact.contacts import W_11, W_22, W_N1, W_N2, W_NN, relative_velocity
 from blockshake.solvers.nscd.solve.gauss_seidel import apply_impulses_into
 from blockshake.solvers.nscd_deformable.contact_points import anchored
@@ -16,13 +16,12 @@ class Problem(NamedTuple):
     """One step's contact problem but for the contacts themselves.
 
     ``inverse_inertia`` (n_bodies, 3, 3): world frame [1/(kg m2)]; ``rotations`` (n_bodies, 3, 3), body to world;
-    ``v_free`` (n_bodies, 6) and ``point_free`` (n_points, 3): velocities of the bodies, world frame, and of the
-    lattice's points, body frames, at the end of the step without contact; ``bodies``, ``elastic``, ``response``,
-    ``anchors``: Bodies, Elastic, ElasticResponse, Anchors.
+    ``v_free`` (n_bodies, 6) and ``point_free`` (n_active, 3): velocities of the bodies, world frame, and of the
+    lattice's points that carry contact, body frames, at the end of the step without contact; ``bodies``, ``response``,
+    ``anchors``: Bodies, ElasticResponse of `at_anchors`, Anchors.
     """
 
     bodies: tuple
-    elastic: tuple
     response: tuple
     anchors: tuple
     inverse_inertia: np.ndarray
@@ -34,8 +33,8 @@ class Problem(NamedTuple):
 class ContactMotion(NamedTuple):
     """Velocities that belong to the impulses.
 
-    ``v`` (n_bodies, 6); ``forces`` and ``points`` (n_points, 3): impulses on the lattice's points and their velocities,
-    body frames; ``u`` (n_contacts, 3): of the contacts, along their bases [m/s].
+    ``v`` (n_bodies, 6); ``forces`` and ``points`` (n_active, 3): impulses on the lattice's points that carry contact
+    and their velocities, body frames; ``u`` (n_contacts, 3): of the contacts, along their bases [m/s].
     """
 
     v: np.ndarray
@@ -79,32 +78,28 @@ def elastic_velocity(anchors, rotations, contacts, contact, points):
     return matrix_product(contacts.basis[contact], (of_b[0] - of_a[0], of_b[1] - of_a[1], of_b[2] - of_a[2]))
 
 
+@kernel_without_aliasing
+def add_times_into(row, factor, x):
+    """Add ``factor`` times ``row`` to ``x``, both (n,)."""
+    for i in range(x.size):
+        x[i] += factor * row[i]
+
+
 @kernel_without_allocation
 def velocities_into(problem, contacts, motion):
     """Velocities that the contacts' impulses give: the exact operator, without a matrix for all contacts."""
-    bodies, elastic, anchors = problem.bodies, problem.elastic, problem.anchors
+    bodies, anchors = problem.bodies, problem.anchors
     apply_impulses_into(bodies, problem.inverse_inertia, contacts, problem.v_free, motion.v)
     impulses_on_points_into(anchors, problem.rotations, contacts, motion.forces)
+    copy_into(problem.point_free, motion.points)
+    velocities, forces = motion.points.reshape(-1), motion.forces.reshape(-1)
     for body in range(bodies.mass.size):
-        first, active = (
-            elastic.first_point[body],
-            anchors.active[anchors.first[body] : anchors.first[body + 1]],
-        )
-        C = compliance_of(elastic, problem.response, body)
-        for point in active:
-            for axis in range(3):
-                motion.points[point, axis] = problem.point_free[point, axis]
-        for source in active:
-            for axis in range(3):
-                force = motion.forces[source, axis]
-                if force != 0.0:
-                    # the compliance is symmetric: its rows are its columns
-                    row = C[3 * (source - first) + axis]
-                    for point in active:
-                        at = 3 * (point - first)
-                        motion.points[point, 0] += force * row[at]
-                        motion.points[point, 1] += force * row[at + 1]
-                        motion.points[point, 2] += force * row[at + 2]
+        first, last = 3 * anchors.first[body], 3 * anchors.first[body + 1]
+        C = compliance_of(anchors.first, problem.response, body)
+        for source in range(first, last):
+            if forces[source] != 0.0:
+                # the compliance is symmetric: its rows are its columns
+                add_times_into(C[source - first], forces[source], velocities[first:last])
     surface_velocities_into(anchors, problem.rotations, contacts, motion.v, motion.points, motion.u)
 
 
@@ -121,15 +116,12 @@ def surface_velocities_into(anchors, rotations, contacts, v, points, u):
 @kernel_without_allocation
 def _point_rows_into(problem, contacts, contact, side, G):
     """Velocity of the lattice points of a contact's body, along the contact's basis, per impulse: ``G`` (3, 3 n)."""
-    anchors, elastic = problem.anchors, problem.elastic
+    anchors = problem.anchors
     body = contacts.body_b[contact] if side else contacts.body_a[contact]
-    C, first = compliance_of(elastic, problem.response, body), elastic.first_point[body]
+    C, first = compliance_of(anchors.first, problem.response, body), anchors.first[body]
     basis, R = contacts.basis[contact], problem.rotations[body]
-    active = anchors.active[anchors.first[body] : anchors.first[body + 1]]
-    for point in active:
-        at = 3 * (point - first)
-        for i in range(3):
-            G[i, at] = G[i, at + 1] = G[i, at + 2] = 0.0
+    for i in range(3):
+        G[i, : C.shape[0]] = 0.0
     for corner in range(4):
         weight = anchors.weights[contact, side, corner]
         if weight == 0.0:
@@ -138,13 +130,9 @@ def _point_rows_into(problem, contacts, contact, side, G):
         for i in range(3):
             direction = transposed_product(R, basis[i])
             for axis in range(3):
-                factor, row = weight * direction[axis], C[source + axis]
+                factor = weight * direction[axis]
                 if factor != 0.0:
-                    for point in active:
-                        at = 3 * (point - first)
-                        G[i, at] += factor * row[at]
-                        G[i, at + 1] += factor * row[at + 1]
-                        G[i, at + 2] += factor * row[at + 2]
+                    add_times_into(C[source + axis], factor, G[i, : C.shape[0]])
 
 
 @kernel_without_allocation
@@ -159,11 +147,11 @@ def _levers_into(contacts, contact, side, lever):
 def _add_block_into(problem, contacts, contact, side, G, lever, other, other_side, block):
     """Add the effect of contact ``other``'s impulse on contact ``contact``'s velocity through a body of both."""
     sign = 1.0 if side == other_side else -1.0
-    elastic, anchors = problem.elastic, problem.anchors
+    anchors = problem.anchors
     body = contacts.body_b[contact] if side else contacts.body_a[contact]
     arm = contacts.arm_b[other] if other_side else contacts.arm_a[other]
     inverse_mass = problem.bodies.inverse_mass[body]
-    first, R, inertia = elastic.first_point[body], problem.rotations[body], problem.inverse_inertia[body]
+    first, R, inertia = anchors.first[body], problem.rotations[body], problem.inverse_inertia[body]
     for j in range(3):
         along = contacts.basis[other, j]
         spin = matrix_product(inertia, cross(arm, along))
@@ -181,13 +169,13 @@ def _add_block_into(problem, contacts, contact, side, G, lever, other, other_sid
 @kernel_without_allocation
 def _own_operators_into(problem, contacts, lever, held, W):
     """`own_operators_into` with three arrays to work in."""
-    elastic, anchors = problem.elastic, problem.anchors
+    anchors = problem.anchors
     for contact in range(contacts.gap.size):
         basis = contacts.basis[contact]
         W[:] = 0.0
         for side in range(2):
             body = contacts.body_b[contact] if side else contacts.body_a[contact]
-            C, first = compliance_of(elastic, problem.response, body), elastic.first_point[body]
+            C, first = compliance_of(anchors.first, problem.response, body), anchors.first[body]
             held[:] = 0.0
             for corner in range(4):
                 for other in range(4):
@@ -277,10 +265,9 @@ def _extend_into(problem, contacts, wanted, operator, G_a, G_b, block, lever_a, 
 @inner_kernel
 def extend_into(problem, contacts, wanted, operator):
     """Bring the contacts that are ``wanted``, bool (n_contacts,), into the operator."""
-    elastic, driven = problem.elastic, problem.bodies.driven
-    widest = 0
-    for body in range(driven.size):
-        widest = max(widest, 3 * (elastic.first_point[body + 1] - elastic.first_point[body]))
+    first, widest = problem.anchors.first, 0
+    for body in range(first.size - 1):
+        widest = max(widest, 3 * (first[body + 1] - first[body]))
     G_a, G_b, block = np.empty((3, widest)), np.empty((3, widest)), np.empty((3, 3))
     lever_a, lever_b = np.empty((3, 3)), np.empty((3, 3))
     _extend_into(problem, contacts, wanted, operator, G_a, G_b, block, lever_a, lever_b)
