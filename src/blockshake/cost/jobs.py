@@ -19,7 +19,7 @@ _FIXED = {
     "all": 0.0,
     "calibrate_stiffness": 5.3,
     "compare_models": 11.4,
-    "compile_kernels": 28.5,
+    "compile_kernels": 37.0,
     "decide": 10.1,
     "make_diagnosis_report": 10.1,
     "make_report": 18.7,
