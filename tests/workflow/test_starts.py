@@ -1,8 +1,10 @@
 """A job starts fast: what is slow to import is loaded where it is called, or drawn with."""
 
 import ast
+import inspect
 
 import pytest
+from snakemake.scheduling.job_scheduler import JobScheduler
 from watched import SCRIPTS, modules_of
 
 from blockshake.files import PACKAGE
@@ -41,3 +43,8 @@ def test_the_package_itself_imports_no_library():
     standard = {"importlib", "re", "pathlib.Path"}
     assert imported_at_the_top("__init__.py") == {*standard, "blockshake.caches.set_cache_home"}
     assert imported_at_the_top("caches.py") <= {"logging", "os", "tempfile", "pathlib.Path"}
+
+
+def test_the_rate_of_jobs_that_the_workflow_takes_away_is_where_it_looks():
+    assert "self.job_rate_limiter = " in inspect.getsource(JobScheduler.__init__)
+    assert "if self.job_rate_limiter is not None:" in inspect.getsource(JobScheduler.schedule)

@@ -234,6 +234,8 @@ def test_shipped_studies_plan_without_error(study):
     )  # fmt: skip
     assert answer.returncode == 0, answer.stderr
     assert "simulate_batch" in answer.stdout
+    # both models of deformable blocks run the same kernels
+    assert re.search(r"^compile_kernels +3$", answer.stdout, flags=re.MULTILINE)
 
 
 @pytest.mark.slow
