@@ -5,6 +5,7 @@ from functools import cache
 from blockshake.dynamics.record_set import record_files
 from blockshake.files import check_past, content_digest
 from blockshake.geometry.structure import load_structure
+from blockshake.sources import kernel_sources
 from blockshake.study.ensembles.batch import HALF_STEP, batch_values
 from blockshake.study.sampling.latin_hypercube import drawn_design
 
@@ -181,6 +182,17 @@ def stiffness_file(model, study, case):
     return (
         f"results/{study}/stiffness/{case}.csv" if solver_of(model).calibrated else []
     )
+
+
+def kernels(model):
+    """Mark that a model's kernels are compiled, the same for all models that run the same ones.
+
+    Its name holds their digest, so that it goes out of date just when the model's runs do. Snakemake's `ancient`
+    would not do: with it a study whose compilation is due runs that and nothing else (issue 4166).
+    """
+    sources = kernel_sources(model)
+    first = next(name for name in SOLVERS if kernel_sources(name) == sources)
+    return f"results/kernels/{first}-{source_digest(*sources)}.json"
 
 
 def runs_of(model, case, **others):

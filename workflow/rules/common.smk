@@ -26,7 +26,7 @@ from blockshake.files import HOME, PACKAGE, load_yaml, parse_yaml, shipped
 from blockshake.log import Failures
 from blockshake.measurement.campaigns.campaign import load_campaign
 from blockshake.simulation.models import MODELS as SOLVERS, solver_of
-from blockshake.sources import kernel_sources, script_sources, source_digest
+from blockshake.sources import script_sources, source_digest
 from blockshake.study.analyses import ANALYSES
 from blockshake.study.config import StudyConfig, check_config
 from blockshake.study.growth import reached
@@ -112,17 +112,6 @@ def beside(path):
 def source_of(script, *models):
     """Digest of all that a script imports, and of the solvers of the models that it runs."""
     return source_digest(*script_sources(script, *models))
-
-
-def kernels(model):
-    """Mark that a model's kernels are compiled, the same for all models that run the same ones.
-
-    Its name holds their digest, so that it goes out of date just when the model's runs do. Snakemake's `ancient`
-    would not do: with it a study whose compilation is due runs that and nothing else (issue 4166).
-    """
-    sources = kernel_sources(model)
-    first = next(name for name in SOLVERS if kernel_sources(name) == sources)
-    return f"results/kernels/{first}-{source_digest(*sources)}.json"
 
 
 FAILURES = Failures()
