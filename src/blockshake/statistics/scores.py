@@ -21,12 +21,16 @@ def mean_differences(curves, others):
     float64 array, shape (n, m, n_markers)
         [m]; NaN for two curves without a common time.
     """
-    means = np.empty((len(curves), len(others), curves.shape[2]))
+    means, same = np.empty((len(curves), len(others), curves.shape[2])), others is curves
     for row, curve in enumerate(curves):
-        apart = np.abs(others - curve)
-        count = np.isfinite(apart).sum(axis=1)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            means[row] = np.where(count > 0, np.nansum(apart, axis=1) / count, np.nan)
+        # pair by pair, which a cache holds
+        for column in range(row if same else 0, len(others)):
+            apart = np.abs(others[column] - curve)
+            count = np.isfinite(apart).sum(axis=0)
+            with np.errstate(invalid="ignore", divide="ignore"):
+                means[row, column] = np.where(count > 0, np.nansum(apart, axis=0) / count, np.nan)
+            if same:
+                means[column, row] = means[row, column]
     return means
 
 
