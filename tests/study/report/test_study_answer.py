@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 from page import texts
 
-from blockshake.statistics.intervals import share_interval
+from blockshake.statistics.intervals import SURE_FROM, share_interval
 from blockshake.study.comparison.paired import models_apart, theory_of
 from blockshake.study.ensembles.envelope import single_figures
 from blockshake.study.limit_states.section import limit_states
@@ -460,8 +460,22 @@ def test_blocks_that_do_not_move_prefer_no_model(content):
     assert parts(with_all_peaks(content, 1e-4))[2]["models-apart"] == ["No block moves by any model."]
     (alike,) = parts(with_all_peaks(content, 0.1))[2]["models-apart"][-1:]
     assert alike.startswith(
-        "The models do not differ by more than chance in collapses or in the largest displacement"
+        "No model moves the blocks farther than another, or collapses more often, in more samples than by chance. Use"
     )
+
+
+def test_models_of_one_median_whose_runs_scatter_more_by_one_are_not_called_alike(content):
+    """Half of the samples go farther by either model."""
+    content = with_all_peaks(content, 0.1)
+    (model, one), *_ = [
+        (model, one)
+        for model, one in content.cases[FIRST].responses.items()
+        if one.samples.sizes["sample"] >= SURE_FROM
+    ]
+    size = one.samples.sizes["sample"]
+    scattered = np.where(np.arange(size) % 2 == 0, 0.06, 0.14)
+    (said,) = parts(with_peaks(content, FIRST, model, scattered))[2]["models-apart"]
+    assert f"in {FIRST} 60 to 140 mm against 100 to 100 mm" in said
 
 
 def test_a_case_that_moves_farther_than_the_one_shown_stands_next_to_it(content):

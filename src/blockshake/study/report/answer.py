@@ -1,5 +1,7 @@
 """First section of a study: what stands, how sure that is, which model to use, what is open, and what to do next."""
 
+from itertools import permutations
+
 import numpy as np
 
 from blockshake.dynamics.system import FALLEN
@@ -32,6 +34,7 @@ from blockshake.study.report.open_questions import MOST, next_steps, unknown
 from blockshake.study.sensitivity.findings import motion_sentences
 
 _WORDS = Words(__name__)
+_WIDER = 2.0  # ratio of the ranges of two models' runs, from which on it is said
 
 
 def answer(content):
@@ -249,12 +252,25 @@ def _differences(content, apart, tried, theory, found):
         apart=list(of_stripe.values())[::-1],
         found=found,
         alike=content.places([name for name in tried if name not in of_stripe]),
+        wider=_wider(found),
         tried=tried,
         first=first,
         theory=theory[first.stripe] if first else None,
         rigid=[one for one in (first.near, first.far) if _is_rigid_contact(one)] if first else [],
         most=MOST,
     )
+
+
+def _wider(found):
+    """Two models of a case of which the runs of one scatter most beyond those of the other; None without."""
+    most, chosen = _WIDER, None
+    for name, ended in found.items():
+        for (wide, of), (narrow, other) in permutations(ended.items(), 2):
+            times = (of.most - of.least) / max(other.most - other.least, STILL)
+            if of.counted == other.counted and of.is_sure and times >= most:
+                most = times
+                chosen = {"name": name, "wide": wide, "of": of, "narrow": narrow, "other": other}
+    return chosen
 
 
 def _is_rigid_contact(model):
