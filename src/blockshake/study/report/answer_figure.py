@@ -17,6 +17,7 @@ _STRUCTURE = 0.016, 0.024  # m, width and height of a structure
 _BETWEEN = 0.02  # of a level, between models drawn at it
 _LEAST = 0.1  # mm, drawn for all that moves less
 _IN_A_ROW = 4  # structures
+_IN_ONE_LINE = 5  # entries of a legend, from which on they stand in two
 _TYPE, _LETTER = 6.0, 2.3e-4  # points, of a name; m, width of a letter of one point
 
 
@@ -66,9 +67,15 @@ def plot_answer(case, marker):
     figure = new_figure(_HEIGHT, CURVES)
     curves = figure.subplots()
     (_draw_levels if case.levels else _draw_histories)(curves, case, marker)
-    handles = curves.get_legend_handles_labels()
+    handles, labels = curves.get_legend_handles_labels()
     figure.legend(
-        *handles, loc="outside upper center", ncols=5, fontsize=6.5, handlelength=1.2, columnspacing=0.8
+        handles,
+        labels,
+        loc="outside upper center",
+        ncols=len(labels) if len(labels) < _IN_ONE_LINE else 3,
+        fontsize=6.5,
+        handlelength=1.2,
+        columnspacing=0.8,
     )
     return figure
 
