@@ -18,6 +18,7 @@ from measured import ROOT, causes_in_words, made_by, put_section
 
 import blockshake
 from blockshake.diagnosis.answer.decision import load_decision
+from blockshake.diagnosis.answer.history import FRICTION
 from blockshake.diagnosis.outside.registry import FORMS
 from blockshake.effects.registry import EFFECTS, title_of
 from blockshake.files import load_json
@@ -30,10 +31,8 @@ def main(shared):
     """Write the part of the page."""
     with tempfile.TemporaryDirectory() as folder:
         campaign, output = Path(folder) / "isolated-building", Path(folder) / "output"
-        program, source = (
-            ROOT / "examples" / "measured_building.py",
-            shared / "measured" / "isolated-building",
-        )
+        program = ROOT / "examples" / "measured_building.py"
+        source = shared / "measured" / "isolated-building"
         subprocess.run([sys.executable, str(program), str(source), str(campaign)], check=True)
         blockshake.diagnose(campaign, output, effort="quick")
         put_section("building", "\n\n".join([made_by(), *_part(campaign, output)]))
@@ -44,8 +43,9 @@ def _part(folder, output):
     yield f"### The building, {datetime.date.today().isoformat()}"
     yield f"The verdict: **{verdict['decision']}** ({verdict['word']})."
     yield "\n".join(f"- {line}" for line in causes_in_words(decision, TITLES)) or "- no cause is named"
-    yield "\n".join(_table(folder, decision))
-    yield from _missed(folder, decision)
+    structure = load_structure(folder / "structure.yaml")
+    yield "\n".join(_table(folder, structure.mass[1], decision))
+    yield from _missed(folder, structure, decision)
     gain = verdict["row_gain"]["recalibrated"]
     yield (
         f"On the forces of the sealed test the cause removes {gain['estimate']:.0%} ({gain['lower']:.0%} to "
@@ -54,19 +54,13 @@ def _part(folder, output):
     yield "\n".join(["Caveats of the diagnosis:", "", *(f"- {line}" for line in verdict["caveats"])])
 
 
-def _table(folder, decision):
+def _table(folder, mass, decision):
     """Rows by test: period of the stiffness that the diagnosis found, and of a regression of the readings."""
     columns = (
-        "test",
-        "role",
-        "largest drift [mm]",
-        "period [s]",
-        "period, regression [s]",
-        "damping ratio, regression",
-    )
+        "test", "role", "largest drift [mm]", "period [s]", "period, regression [s]", "damping ratio, regression",
+    )  # fmt: skip
     yield f"| {' | '.join(columns)} |"
     yield f"|{' --- |' * len(columns)}"
-    mass = load_structure(folder / "structure.yaml").mass[1]
     own = [one for one in decision.histories if one.parameter == "stiffness"]
     found = dict(zip(own[0].tests, own[0].sizes, strict=True)) if own else {}
     for test in yaml.safe_load((folder / "campaign.yaml").read_text())["tests"]:
@@ -80,15 +74,18 @@ def _table(folder, decision):
         yield f"| {test['name']} | {test['role']} | {1e3 * farthest:.0f} | {words} | {period:.2f} | {ratio:.2f} |"
 
 
-def _missed(folder, decision):
+def _missed(folder, structure, decision):
     """Sentences on what the regression shows and the answer does not say."""
     periods = {name: _regression(folder, name)[1] for name in decision.tests}
     short, long = min(periods, key=periods.get), max(periods, key=periods.get)
     softer = 1.0 - (periods[short] / periods[long]) ** 2
     if not any("damping" in cause.parameters for cause in decision.causes):
+        guess = structure.file.friction[0].coefficient
+        changes = [one.sizes for one in decision.histories if one.quantity == FRICTION]
+        left = [guess * (1.0 + size.estimate) for sizes in changes for size in sizes]
         yield (
-            "The damping is missing in the answer: the guessed friction takes its part, and a second size has to add a "
-            "twentieth to what the first one explains."
+            f"The damping is missing in the answer, which has a friction of {min(left):.3f} to {max(left):.3f} of the "
+            f"weight in its place, {guess:g} being the guess; a second size has to add a twentieth to the first."
         )
     if not any(one.changes for one in decision.histories if one.parameter == "stiffness"):
         yield (

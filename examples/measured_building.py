@@ -17,39 +17,28 @@ import yaml
 
 ROLES = {"ICA50": "fit", "ICA100": "fit", "SP100": "select", "ICA140": "sealed"}
 MOVES, BEFORE, LENGTH = 0.2, 2.0, 50.0  # m/s2 at which a motion begins to count; s before it, and s in all
-LOW, HIGH = [5.0, 0.0, -6.0], [5.0, 0.0, 6.0]  # m, places of the building's markers
-STRUCTURE = {
+STRUCTURE = {  # size, density and friction of the building are guesses
     "name": "building",
     "materials": {
         "table": {"density": 7800.0, "youngs_modulus": 2.0e11, "poisson_ratio": 0.3},
-        "building": {
-            "density": 300.0,
-            "youngs_modulus": 3.0e10,
-            "poisson_ratio": 0.2,
-        },  # density and size: guesses
+        "building": {"density": 300.0, "youngs_modulus": 3.0e10, "poisson_ratio": 0.2},
     },
     "shapes": {"table": {"box": [20.0, 20.0, 0.5]}, "building": {"box": [10.0, 10.0, 16.0]}},
     "bodies": [
-        {
-            "name": "table",
-            "shape": "table",
-            "material": "table",
-            "position": [0.0, 0.0, -0.25],
-            "driven": True,
-        },
+        {"name": "table", "shape": "table", "material": "table", "position": [0.0, 0.0, -0.25], "driven": True},
         {"name": "building", "shape": "building", "material": "building", "position": [0.0, 0.0, 8.0]},
     ],
     "friction": [{"pair": ["table", "building"], "coefficient": 0.05}],
     "markers": [
         {"name": "table-face", "body": "table", "position": [9.0, 0.0, 0.25]},
-        {"name": "low", "body": "building", "position": LOW},
-        {"name": "high", "body": "building", "position": HIGH},
+        {"name": "low", "body": "building", "position": [5.0, 0.0, -6.0]},
+        {"name": "high", "body": "building", "position": [5.0, 0.0, 6.0]},
     ],
     "accelerometers": [
         {"name": "table-acc", "body": "table", "position": [9.0, 0.0, 0.25], "axes": ["x"]},
         {"name": "building-acc", "body": "building", "position": [0.0, 0.0, 0.0], "axes": ["x"]},
     ],
-}
+}  # fmt: skip
 
 
 def write_test(name, readings, folder):
@@ -60,13 +49,10 @@ def write_test(name, readings, folder):
     rows = slice(start, start + int(LENGTH * rate) + 1)
     times = np.arange(rows.stop - rows.start) / rate
     drift = readings[f"{name}_displacement"].astype(float).mean(axis=0)
-    moved = {
-        "table-face": displacement[rows],
-        "low": (displacement + drift)[rows],
-        "high": (displacement + drift)[rows],
-    }
-    optical = {f"{marker}.{axis}": 0.0 for marker in moved for axis in "xyz"}
-    optical |= {f"{marker}.x": path - path[0] for marker, path in moved.items()}
+    table, building = displacement[rows], (displacement + drift)[rows]
+    optical = {f"{marker}.{axis}": 0.0 for marker in ("table-face", "low", "high") for axis in "xyz"}
+    optical["table-face.x"] = table - table[0]
+    optical["low.x"] = optical["high.x"] = building - building[0]
     pd.DataFrame({"time_s": times} | optical).to_csv(folder / f"{name}.csv", index=False, float_format="%.9g")
     floors = readings[f"{name}_acceleration"].astype(float).mean(axis=0)
     channels = {"table-acc-x": acceleration[rows], "building-acc-x": floors[rows]}

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from moved_point import moved_point
 
 from blockshake.diagnosis.answer.explain import given, likelihoods
 from blockshake.diagnosis.evidence.nuisances import nuisances_of, possible
@@ -30,14 +31,7 @@ def _tested(force, weighs):
 
 
 def _spring(likelihood):
-    point = SimpleNamespace(
-        unit=np.ones(len(TIME)),
-        displacement=MOVED,
-        velocity=SPEED,
-        fine_velocity=SPEED,
-        through_kernel=np.asarray,
-    )
-    points = SimpleNamespace(place="block@0", by_test=[point])
+    points = moved_point(MOVED, SPEED)
     return next(one for one in explain_following(likelihood, points, 9.81 * MASS) if one.cause == "rope")
 
 

@@ -1,9 +1,8 @@
 """A spring, a damper, and both together: each is called by its own name, and the rows of the others stay theirs."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
+from moved_point import moved_point
 
 from blockshake.diagnosis.evidence.explanation import NEVER
 from blockshake.diagnosis.evidence.likelihood import from_rows
@@ -20,14 +19,7 @@ def _explained(stiffness, damping):
     rows = -stiffness * MOVED - damping * SPEED
     rows += np.random.default_rng(5).normal(0.0, NOISE, len(TIME))
     likelihood = from_rows([NOISE**2 * np.eye(len(TIME))], [rows], [])
-    point = SimpleNamespace(
-        unit=np.ones(len(TIME)),
-        displacement=MOVED,
-        velocity=SPEED,
-        fine_velocity=SPEED,
-        through_kernel=np.asarray,
-    )
-    points = SimpleNamespace(place="block-2@0", by_test=[point])
+    points = moved_point(MOVED, SPEED)
     return {one.cause: one for one in explain_following(likelihood, points, 30e3)}
 
 

@@ -74,6 +74,13 @@ def test_markers_that_one_pose_without_rotation_moved_are_readings():
 
     assert _kinds(_spoilt(of_a_pose)) == []
 
+    def of_the_pose_of_another_body(values):
+        of_a_pose(values)
+        block = [index for index, name in enumerate(MARKERS) if name.startswith("block-1")]
+        values[:, block] = values[:, [MARKERS.index("slab-face")]]
+
+    assert {kind for kind, _ in _kinds(_spoilt(of_the_pose_of_another_body))} == {"doubled"}
+
 
 def test_an_optical_system_that_hangs_reads_nothing():
     def hang(values):

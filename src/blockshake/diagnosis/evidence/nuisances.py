@@ -26,9 +26,7 @@ class Nuisance:
     """A tolerance of undamaged blocks."""
 
     columns: list  # of float64 array, shape (n_rows,); by test, times the standard deviation of the amplitude
-    most: float = (
-        np.inf
-    )  # magnitude of the amplitude in standard deviations, beyond which no structure has it
+    most: float = np.inf  # magnitude of the amplitude that no structure exceeds, in standard deviations
 
 
 def nuisances_of(tests):

@@ -18,9 +18,7 @@ _NOISY = 0.3  # third over first differences: noise has 3, a motion of 10 Hz wit
 _WINDOW = 50  # readings, in which noise changes some
 _RESOLVED = 0.3  # of the readings of the quietest window, that noise changes where its digits are fine enough
 _MANY = 4  # columns that a line spells out
-_ONE_POSE = (
-    3  # columns of a body and axis, from which on those that are all alike are one reading of all the body
-)
+_ONE_POSE = 3  # columns of a body and axis, which one pose may move alike from this number on
 # beyond which a sensor that reads the same throughout reads nothing: no first reading, and twice gravity
 _STUCK = {"m": 0.01, "m/s2": 20.0}
 _INSTRUMENTS = (
@@ -202,7 +200,7 @@ def _faults(values, groups, nothing):
                 faults.append(_Fault("clipped", column, at_end, p))
                 repeats &= ~touched
             original = copies.setdefault(_content(values[:, column]), column)
-            if noisy and original != column and not _of_one_pose(values, groups, group):
+            if noisy and original != column and not _of_one_pose(values, groups, original, column):
                 every = np.isfinite(values[:, column])
                 faults.append(_Fault("doubled", original, every, 0.0))
                 faults.append(_Fault("doubled", column, every, 0.0))
@@ -213,11 +211,11 @@ def _faults(values, groups, nothing):
     return faults
 
 
-def _of_one_pose(values, groups, group):
-    """Whether all columns of a body and axis are one: a pose that does not rotate moved all markers alike."""
-    mine = values[:, [other == group for other in groups]]
-    apart = np.abs(mine - mine[:, :1])
-    return mine.shape[1] >= _ONE_POSE and not (apart > _SAME * np.nanmax(np.abs(mine))).any()
+def _of_one_pose(values, groups, original, column):
+    """Whether a column and its copy are, with all others of their body and axis, what one unturned pose gives."""
+    mine = values[:, [other == groups[column] for other in groups]]
+    apart = np.abs(mine - values[:, [column]]) > _SAME * np.nanmax(np.abs(values[:, column]))
+    return groups[original] == groups[column] and mine.shape[1] >= _ONE_POSE and not apart.any()
 
 
 def _long_enough(still):
